@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "hash_queue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace undecimate
+{
+
+ExponentialIntervals::ExponentialIntervals(double smallest, double largest, Index count)
+  : scale_(largest > 0.0 ? 1.0 / largest : 0.0)
+  , sum_(smallest * this->scale_ + 1.0)
+  , delta_(1.0 - smallest * this->scale_)
+  , length_(1.0)
+  , count_(std::max<Index>(1, count))
+{
+  // D = 0 would divide by zero in both formulas: all values equal need one interval.
+  if (largest <= 0.0 || this->delta_ <= 0.0)
+  {
+    this->delta_ = 0.0;
+    this->count_ = 1;
+    return;
+  }
+  this->length_ = 1.0 / std::log1p(this->delta_); // e_max is 1 after normalisation
+}
+
+double ExponentialIntervals::bound(Index j) const
+{
+  if (this->delta_ == 0.0)
+  {
+    // The two ends of eq. 2 still hold: d_0 = e_min and d_m = e_min + e_max.
+    const double largest = this->scale_ > 0.0 ? 1.0 / this->scale_ : 0.0;
+    return j == 0 ? largest : 2.0 * largest;
+  }
+  const double x = 1.0 + this->delta_ - j * (this->delta_ / this->count_);
+  return (this->sum_ - this->length_ * std::log(x)) / this->scale_;
+}
+
+Index ExponentialIntervals::interval(double value) const
+{
+  const double e = value * this->scale_;
+  if (this->delta_ == 0.0 || !(e < 1.0))
+  {
+    return this->count_ - 1;
+  }
+  const double x = 1.0 + this->delta_ - std::exp((this->sum_ - e) / this->length_);
+  const double j = std::floor(x * (this->count_ / this->delta_));
+  return j <= 0.0 ? 0 : std::min(static_cast<Index>(j), this->count_ - 1);
+}
+
+Index logarithmicInterval(float value)
+{
+  if (value != value)
+  {
+    return kLogarithmicIntervals - 1;
+  }
+  if (!(value > 0.0F))
+  {
+    return 0;
+  }
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return static_cast<Index>(bits >> 16);
+}
+
+HashQueue::HashQueue(Index nodeCount, Index intervalCount)
+  : links_(nodeCount)
+  , interval_(nodeCount, kNone)
+  , ends_(std::max<Index>(1, intervalCount), Ends{ kNone, kNone })
+  , intervalCount_(std::max<Index>(1, intervalCount))
+{
+  std::size_t words = this->intervalCount_;
+  for (auto& level : this->bits_)
+  {
+    words = (words + 63) / 64;
+    level.assign(words, 0);
+  }
+}
+
+void HashQueue::mark(Index interval)
+{
+  for (auto& level : this->bits_)
+  {
+    std::uint64_t& word = level[interval >> 6];
+    const bool known = word != 0;
+    word |= std::uint64_t{ 1 } << (interval & 63);
+    if (known)
+    {
+      return;
+    }
+    interval >>= 6;
+  }
+}
+
+void HashQueue::unmark(Index interval)
+{
+  for (auto& level : this->bits_)
+  {
+    std::uint64_t& word = level[interval >> 6];
+    word &= ~(std::uint64_t{ 1 } << (interval & 63));
+    if (word != 0)
+    {
+      return;
+    }
+    interval >>= 6;
+  }
+}
+
+void HashQueue::insert(Index node, Index interval)
+{
+  if (this->interval_[node] != kNone)
+  {
+    this->remove(node);
+  }
+  this->interval_[node] = interval;
+  Ends& ends = this->ends_[interval];
+  this->links_[node] = { kNone, ends.last };
+  if (ends.last == kNone)
+  {
+    ends.first = node;
+    this->mark(interval);
+  }
+  else
+  {
+    this->links_[ends.last].next = node;
+  }
+  ends.last = node;
+  ++this->size_;
+}
+
+void HashQueue::remove(Index node)
+{
+  const Index interval = this->interval_[node];
+  if (interval == kNone)
+  {
+    return;
+  }
+  this->interval_[node] = kNone;
+  Ends& ends = this->ends_[interval];
+  const Links links = this->links_[node];
+  (links.previous == kNone ? ends.first : this->links_[links.previous].next) = links.next;
+  (links.next == kNone ? ends.last : this->links_[links.next].previous) = links.previous;
+  if (ends.first == kNone)
+  {
+    this->unmark(interval);
+  }
+  --this->size_;
+}
+
+Index HashQueue::lowestInterval() const
+{
+  if (this->size_ == 0)
+  {
+    return kNone;
+  }
+  Index interval = 0;
+  for (int level = 3; level >= 0; --level)
+  {
+    const std::uint64_t word = this->bits_[level][interval];
+    interval = (interval << 6) + __builtin_ctzll(word);
+  }
+  return interval;
+}
+
+Index HashQueue::front() const
+{
+  const Index interval = this->lowestInterval();
+  return interval == kNone ? kNone : this->ends_[interval].first;
+}
+
+Index HashQueue::pop()
+{
+  const Index node = this->front();
+  if (node != kNone)
+  {
+    this->remove(node);
+  }
+  return node;
+}
+
+} // namespace undecimate

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file monitor.h
+/// @brief Progress and cancellation of long core calls.
+
+#ifndef UNDECIMATE_CORE_MONITOR_H
+#define UNDECIMATE_CORE_MONITOR_H
+
+#include <atomic>
+#include <functional>
+#include <utility>
+
+namespace undecimate
+{
+
+/// The one object through which the core reports progress and hears cancel.
+///
+/// The core calls update() with a fraction that never decreases and ends at 1. The host's callback
+/// runs in the thread of the core call, at most about two hundred times a call, and returns false
+/// to cancel. cancel() may be called from any thread. A monitor may be used for one call after the
+/// other; reset() forgets an earlier cancellation.
+class Monitor
+{
+public:
+  using Callback = std::function<bool(double fraction)>;
+
+  Monitor() = default;
+  explicit Monitor(Callback callback)
+    : callback_(std::move(callback))
+  {
+  }
+
+  /// Ask the running call, or the next one, to stop. Idempotent, from any thread.
+  void cancel() { this->cancelled_ = true; }
+  bool cancelled() const { return this->cancelled_; }
+
+  /// Fraction done of the running or the last call, in [0, 1].
+  double progress() const { return this->progress_; }
+
+  /// Start anew: no progress, not cancelled.
+  void reset()
+  {
+    this->cancelled_ = false;
+    this->progress_ = 0.0;
+  }
+
+  /// For the core: report a fraction; false when the call has to stop.
+  bool update(double fraction)
+  {
+    const double done = this->progress_;
+    if (fraction - done >= 0.005 || (fraction >= 1.0 && done < 1.0))
+    {
+      this->progress_ = fraction > 1.0 ? 1.0 : fraction;
+      if (this->callback_ && !this->callback_(this->progress_))
+      {
+        this->cancelled_ = true;
+      }
+    }
+    return !this->cancelled_;
+  }
+
+private:
+  Callback callback_;
+  std::atomic<bool> cancelled_{ false };
+  std::atomic<double> progress_{ 0.0 };
+};
+
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,547 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "record.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+namespace undecimate
+{
+
+namespace
+{
+
+constexpr int kCorners = 3;
+
+// Nodes of a patch: each old cell adds at most kCorners of them, and local numbers are bytes.
+constexpr int kMaximumLocals = 256;
+
+Outcome damaged(const char* array, std::int64_t entry, const char* why)
+{
+  return { Status::InvalidRecord,
+    std::string("Record array '") + array + "' is damaged at entry " + std::to_string(entry) + ": " +
+      why + "." };
+}
+
+Outcome checkPermutation(const Index* order, Index count, const char* name)
+{
+  std::vector<bool> seen(count, false);
+  for (Index i = 0; i < count; ++i)
+  {
+    if (order[i] < 0 || order[i] >= count || seen[order[i]])
+    {
+      return damaged(name, i, "not a permutation");
+    }
+    seen[order[i]] = true;
+  }
+  return {};
+}
+
+// A shape may only use local numbers that the cursor will have filled when it needs them, in both
+// directions.
+Outcome checkShape(const RecordView& record, Index shape)
+{
+  const Index begin = record.shapeOffsets[shape];
+  const Index end = record.shapeOffsets[shape + 1];
+  if (end - begin < 3)
+  {
+    return damaged("ShapeOffsets", shape, "shape too short");
+  }
+  const unsigned char* bytes = record.shapes + begin;
+  const int oldCount = bytes[0];
+  const int newCount = bytes[1];
+  const int extra = bytes[2];
+  const int corners = record.cornersPerCell;
+  const Index size =
+    3 + corners * (oldCount + newCount) + (record.hasSources ? newCount : 0);
+  if (end - begin != size || oldCount < 1 || oldCount > kMaximumPatchCells || newCount >= oldCount)
+  {
+    return damaged("Shapes", begin, "wrong counts");
+  }
+  const unsigned char* oldCells = bytes + 3;
+  const unsigned char* newCells = oldCells + corners * oldCount;
+  std::array<bool, kMaximumLocals> inOld{};
+  std::array<bool, kMaximumLocals> inNew{};
+  int largest = 0;
+  for (int i = 0; i < corners * oldCount; ++i)
+  {
+    inOld[oldCells[i]] = true;
+    largest = std::max<int>(largest, oldCells[i]);
+  }
+  for (int i = 0; i < corners * newCount; ++i)
+  {
+    if (newCells[i] == 0 || !inOld[newCells[i]])
+    {
+      return damaged("Shapes", begin + 3 + corners * oldCount + i, "unknown local node");
+    }
+    inNew[newCells[i]] = true;
+  }
+  if (!inOld[0] || extra > largest)
+  {
+    return damaged("Shapes", begin, "the removed node is missing");
+  }
+  for (int local = 1; local <= largest; ++local)
+  {
+    const bool listed = local > largest - extra;
+    if (!inOld[local] || inNew[local] == listed)
+    {
+      return damaged("Shapes", begin, "a local node is not to be found");
+    }
+  }
+  if (record.hasSources)
+  {
+    const unsigned char* sources = newCells + corners * newCount;
+    for (int i = 0; i < newCount; ++i)
+    {
+      if (sources[i] >= oldCount)
+      {
+        return damaged("Shapes", begin, "unknown source");
+      }
+    }
+  }
+  return {};
+}
+
+int lostSourceCount(const unsigned char* shape, int corners)
+{
+  const int oldCount = shape[0];
+  const int newCount = shape[1];
+  const unsigned char* sources = shape + 3 + corners * (oldCount + newCount);
+  std::uint64_t heirs = 0;
+  for (int i = 0; i < newCount; ++i)
+  {
+    heirs |= std::uint64_t{ 1 } << sources[i];
+  }
+  return oldCount - __builtin_popcountll(heirs);
+}
+
+Outcome checkSteps(const RecordView& record)
+{
+  std::int64_t position = 0;
+  std::int64_t lost = 0;
+  std::int64_t cells = record.baseCellCount;
+  for (Index step = 0; step < record.stepCount; ++step)
+  {
+    const Index shape = record.stepShapes[step];
+    if (shape < 0 || shape >= record.shapeCount)
+    {
+      return damaged("StepShapes", step, "no such shape");
+    }
+    const unsigned char* bytes = record.shapes + record.shapeOffsets[shape];
+    const int newCount = bytes[1];
+    const int extra = bytes[2];
+    if (position + newCount + extra > record.patchSize)
+    {
+      return damaged("Patches", record.patchSize, "too short");
+    }
+    for (int i = 0; i < newCount; ++i)
+    {
+      const Index slot = record.patches[position + i];
+      if (slot < 0 || slot >= cells)
+      {
+        return damaged("Patches", position + i, "no such cell");
+      }
+      for (int k = 0; k < i; ++k)
+      {
+        if (record.patches[position + k] == slot)
+        {
+          return damaged("Patches", position + i, "a cell is listed twice");
+        }
+      }
+    }
+    position += newCount;
+    for (int i = 0; i < extra; ++i)
+    {
+      const Index node = record.patches[position + i];
+      if (node < 0 || node >= record.baseNodeCount + step)
+      {
+        return damaged("Patches", position + i, "no such node");
+      }
+    }
+    position += extra;
+    cells += bytes[0] - newCount;
+    if (record.hasSources)
+    {
+      lost += lostSourceCount(bytes, record.cornersPerCell);
+    }
+    const float error = record.stepErrors[step];
+    if (!(error >= 0.0F) || (step > 0 && error > record.stepErrors[step - 1]))
+    {
+      return damaged("StepErrors", step, "errors must not increase from step to step");
+    }
+  }
+  if (position != record.patchSize)
+  {
+    return damaged("Patches", position, "too long");
+  }
+  if (cells != record.cellCount)
+  {
+    return damaged("StepShapes", record.stepCount, "the steps do not lead to all cells");
+  }
+  if (record.hasSources && lost != record.lostSourceSize)
+  {
+    return damaged("LostSources", lost, "wrong length");
+  }
+  return {};
+}
+
+Outcome checkSources(const Index* sources, std::int64_t count, Index cellCount, const char* name)
+{
+  for (std::int64_t i = 0; i < count; ++i)
+  {
+    if (sources[i] < 0 || sources[i] >= cellCount)
+    {
+      return damaged(name, i, "no such cell");
+    }
+  }
+  return {};
+}
+
+// The order that puts the survivors first, in their original order, and then the others in the
+// order in which they come back.
+std::vector<Index> recordOrder(Index count, const std::vector<Index>& comingBack)
+{
+  std::vector<bool> gone(count, false);
+  for (const Index i : comingBack)
+  {
+    gone[i] = true;
+  }
+  std::vector<Index> order;
+  order.reserve(count);
+  for (Index i = 0; i < count; ++i)
+  {
+    if (!gone[i])
+    {
+      order.push_back(i);
+    }
+  }
+  order.insert(order.end(), comingBack.begin(), comingBack.end());
+  return order;
+}
+
+std::vector<Index> inverse(const std::vector<Index>& order)
+{
+  std::vector<Index> position(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    position[order[i]] = static_cast<Index>(i);
+  }
+  return position;
+}
+
+} // namespace
+
+RecordView Record::view() const
+{
+  RecordView v;
+  v.nodeCount = this->nodeCount;
+  v.cellCount = this->cellCount;
+  v.baseNodeCount = this->baseNodeCount;
+  v.baseCellCount = this->baseCellCount;
+  v.stepCount = static_cast<Index>(this->stepShapes.size());
+  v.shapeCount = static_cast<Index>(this->shapeOffsets.size()) - 1;
+  v.cornersPerCell = this->cornersPerCell;
+  v.hasSources = this->hasSources;
+  v.nodeOrder = this->nodeOrder.data();
+  v.cellOrder = this->cellOrder.data();
+  v.stepShapes = this->stepShapes.data();
+  v.stepErrors = this->stepErrors.data();
+  v.patches = this->patches.data();
+  v.patchSize = static_cast<std::int64_t>(this->patches.size());
+  v.shapeOffsets = this->shapeOffsets.data();
+  v.shapes = this->shapes.data();
+  v.baseSources = this->baseSources.data();
+  v.lostSources = this->lostSources.data();
+  v.lostSourceSize = static_cast<std::int64_t>(this->lostSources.size());
+  return v;
+}
+
+std::size_t Record::byteSize() const
+{
+  return sizeof(Index) *
+    (this->nodeOrder.size() + this->cellOrder.size() + this->stepShapes.size() +
+      this->patches.size() + this->shapeOffsets.size() + this->baseSources.size() +
+      this->lostSources.size()) +
+    sizeof(float) * this->stepErrors.size() + this->shapes.size();
+}
+
+Outcome validateRecord(const RecordView& record, const Index* baseCells)
+{
+  if (record.nodeCount < 0 || record.cellCount < 0 || record.baseNodeCount < 0 ||
+    record.baseCellCount < 0 || record.shapeCount < 0 || record.patchSize < 0 ||
+    record.lostSourceSize < 0 || record.baseCellCount > record.cellCount ||
+    record.stepCount != record.nodeCount - record.baseNodeCount || record.stepCount < 0 ||
+    record.cornersPerCell != kCorners)
+  {
+    return { Status::InvalidRecord, "The record's counts contradict each other." };
+  }
+  if (Outcome o = checkPermutation(record.nodeOrder, record.nodeCount, "NodeOrder"); !o)
+  {
+    return o;
+  }
+  if (Outcome o = checkPermutation(record.cellOrder, record.cellCount, "CellOrder"); !o)
+  {
+    return o;
+  }
+  if (record.shapeOffsets[0] != 0)
+  {
+    return damaged("ShapeOffsets", 0, "must start at 0");
+  }
+  for (Index shape = 0; shape < record.shapeCount; ++shape)
+  {
+    if (record.shapeOffsets[shape + 1] < record.shapeOffsets[shape])
+    {
+      return damaged("ShapeOffsets", shape + 1, "decreases");
+    }
+  }
+  for (Index shape = 0; shape < record.shapeCount; ++shape)
+  {
+    if (Outcome o = checkShape(record, shape); !o)
+    {
+      return o;
+    }
+  }
+  for (std::int64_t i = 0; i < std::int64_t{ kCorners } * record.baseCellCount; ++i)
+  {
+    if (baseCells[i] < 0 || baseCells[i] >= record.baseNodeCount)
+    {
+      return damaged("cells of the coarse mesh", i / kCorners, "no such node");
+    }
+  }
+  if (record.hasSources)
+  {
+    if (Outcome o =
+          checkSources(record.baseSources, record.baseCellCount, record.cellCount, "BaseSources");
+        !o)
+    {
+      return o;
+    }
+    if (Outcome o =
+          checkSources(record.lostSources, record.lostSourceSize, record.cellCount, "LostSources");
+        !o)
+    {
+      return o;
+    }
+  }
+  return checkSteps(record);
+}
+
+// Steps in the order of removal and in original numbers; finish() reverses and renumbers.
+struct RecordBuilder::Internals
+{
+  Index nodeCount = 0;
+  Index cellCount = 0;
+  Record record;
+  std::vector<Index> removedNodes;
+  std::vector<Index> freedSlots; // step after step
+  std::vector<Index> sources;    // current source of each slot, if tracked
+  // Shapes by content. The keys point into blocks that never move.
+  std::unordered_map<std::string, Index> shapeNumbers;
+  std::string scratch;
+  // Local number of a node in the current step: a small direct-mapped table would need n entries,
+  // and patches are small, so a linear search over the patch's nodes is faster.
+  std::array<Index, kMaximumLocals> locals;
+  int localCount = 0;
+  float largestError = 0.0F;
+
+  int local(Index node)
+  {
+    for (int i = 0; i < this->localCount; ++i)
+    {
+      if (this->locals[i] == node)
+      {
+        return i;
+      }
+    }
+    this->locals[this->localCount] = node;
+    return this->localCount++;
+  }
+};
+
+RecordBuilder::RecordBuilder(Index nodeCount, Index cellCount, bool trackSources)
+  : internals_(std::make_unique<Internals>())
+{
+  Internals& in = *this->internals_;
+  in.nodeCount = nodeCount;
+  in.cellCount = cellCount;
+  in.record.hasSources = trackSources;
+  if (trackSources)
+  {
+    in.sources.resize(cellCount);
+    for (Index i = 0; i < cellCount; ++i)
+    {
+      in.sources[i] = i;
+    }
+  }
+}
+
+RecordBuilder::~RecordBuilder() = default;
+
+Index RecordBuilder::stepCount() const
+{
+  return static_cast<Index>(this->internals_->removedNodes.size());
+}
+
+double RecordBuilder::error() const
+{
+  return this->internals_->largestError;
+}
+
+void RecordBuilder::append(const Step& step)
+{
+  Internals& in = *this->internals_;
+  Record& record = in.record;
+
+  in.locals[0] = step.node;
+  in.localCount = 1;
+  std::string& shape = in.scratch;
+  shape.clear();
+  shape.push_back(static_cast<char>(step.oldCount));
+  shape.push_back(static_cast<char>(step.newCount));
+  shape.push_back(0);
+  // Numbering by first appearance in the new cells makes equal patches equal shapes, and leaves the
+  // nodes that no new cell has with the last numbers.
+  shape.resize(3 + kCorners * (step.oldCount + step.newCount));
+  char* oldLocals = &shape[3];
+  char* newLocals = oldLocals + kCorners * step.oldCount;
+  for (int i = 0; i < kCorners * step.newCount; ++i)
+  {
+    newLocals[i] = static_cast<char>(in.local(step.newCells[i]));
+  }
+  const int known = in.localCount;
+  for (int i = 0; i < kCorners * step.oldCount; ++i)
+  {
+    oldLocals[i] = static_cast<char>(in.local(step.oldCells[i]));
+  }
+  const int extra = in.localCount - known;
+  shape[2] = static_cast<char>(extra);
+
+  if (record.hasSources)
+  {
+    shape.append(reinterpret_cast<const char*>(step.sources), step.newCount);
+    std::uint64_t heirs = 0;
+    std::array<Index, kMaximumPatchCells> inherited;
+    for (int i = 0; i < step.newCount; ++i)
+    {
+      heirs |= std::uint64_t{ 1 } << step.sources[i];
+      inherited[i] = in.sources[step.slots[step.sources[i]]];
+    }
+    for (int i = 0; i < step.oldCount; ++i)
+    {
+      if (((heirs >> i) & 1) == 0)
+      {
+        record.lostSources.push_back(in.sources[step.slots[i]]);
+      }
+    }
+    for (int i = 0; i < step.newCount; ++i)
+    {
+      in.sources[step.slots[i]] = inherited[i];
+    }
+  }
+
+  const auto [found, added] =
+    in.shapeNumbers.try_emplace(shape, static_cast<Index>(record.shapeOffsets.size()) - 1);
+  if (added)
+  {
+    record.shapes.insert(record.shapes.end(), shape.begin(), shape.end());
+    record.shapeOffsets.push_back(static_cast<Index>(record.shapes.size()));
+  }
+
+  record.stepShapes.push_back(found->second);
+  in.largestError = std::max(in.largestError, static_cast<float>(step.error));
+  record.stepErrors.push_back(in.largestError);
+  record.patches.insert(record.patches.end(), step.slots, step.slots + step.newCount);
+  record.patches.insert(
+    record.patches.end(), in.locals.begin() + known, in.locals.begin() + known + extra);
+  in.removedNodes.push_back(step.node);
+  in.freedSlots.insert(
+    in.freedSlots.end(), step.slots + step.newCount, step.slots + step.oldCount);
+}
+
+Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
+{
+  Internals& in = *this->internals_;
+  Record record = std::move(in.record);
+  in.shapeNumbers.clear();
+  const Index steps = static_cast<Index>(in.removedNodes.size());
+
+  // Reverse the steps. A list of chunks is reversed in place: the whole, then each chunk.
+  std::reverse(in.removedNodes.begin(), in.removedNodes.end());
+  std::reverse(record.stepShapes.begin(), record.stepShapes.end());
+  std::reverse(record.stepErrors.begin(), record.stepErrors.end());
+  std::reverse(record.patches.begin(), record.patches.end());
+  std::reverse(in.freedSlots.begin(), in.freedSlots.end());
+  std::reverse(record.lostSources.begin(), record.lostSources.end());
+  auto patch = record.patches.begin();
+  auto freed = in.freedSlots.begin();
+  auto lost = record.lostSources.begin();
+  for (Index step = 0; step < steps; ++step)
+  {
+    const unsigned char* shape = record.shapes.data() + record.shapeOffsets[record.stepShapes[step]];
+    const auto reverseChunk = [](auto& begin, int size) {
+      std::reverse(begin, begin + size);
+      begin += size;
+    };
+    reverseChunk(patch, shape[1] + shape[2]);
+    reverseChunk(freed, shape[0] - shape[1]);
+    if (record.hasSources)
+    {
+      reverseChunk(lost, lostSourceCount(shape, kCorners));
+    }
+  }
+
+  record.nodeCount = in.nodeCount;
+  record.cellCount = in.cellCount;
+  record.baseNodeCount = in.nodeCount - steps;
+  record.baseCellCount = in.cellCount - static_cast<Index>(in.freedSlots.size());
+  record.nodeOrder = recordOrder(in.nodeCount, in.removedNodes);
+  record.cellOrder = recordOrder(in.cellCount, in.freedSlots);
+  in.removedNodes = {};
+  in.freedSlots = {};
+
+  const std::vector<Index> nodePosition = inverse(record.nodeOrder);
+  {
+    const std::vector<Index> slotPosition = inverse(record.cellOrder);
+    patch = record.patches.begin();
+    for (Index step = 0; step < steps; ++step)
+    {
+      const unsigned char* shape =
+        record.shapes.data() + record.shapeOffsets[record.stepShapes[step]];
+      for (int i = 0; i < shape[1]; ++i, ++patch)
+      {
+        *patch = slotPosition[*patch];
+      }
+      for (int i = 0; i < shape[2]; ++i, ++patch)
+      {
+        *patch = nodePosition[*patch];
+      }
+    }
+  }
+
+  baseCells.resize(std::size_t{ kCorners } * record.baseCellCount);
+  for (Index slot = 0; slot < record.baseCellCount; ++slot)
+  {
+    for (int corner = 0; corner < kCorners; ++corner)
+    {
+      baseCells[std::size_t{ kCorners } * slot + corner] =
+        nodePosition[cells[std::size_t{ kCorners } * record.cellOrder[slot] + corner]];
+    }
+  }
+  if (record.hasSources)
+  {
+    record.baseSources.resize(record.baseCellCount);
+    for (Index slot = 0; slot < record.baseCellCount; ++slot)
+    {
+      record.baseSources[slot] = in.sources[record.cellOrder[slot]];
+    }
+    in.sources = {};
+  }
+  return record;
+}
+
+} // namespace undecimate

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file record.h
+/// @brief The record of a decimation: what each step replaced, in the order in which it is undone.
+///
+/// A step removes one node: the cells around it (a patch) are replaced by fewer cells, which take
+/// the slots of the old ones. The record is topology only; positions and nodal values are never
+/// changed. It does not say who wrote it: node removal, half-edge collapse and mixed meshes all
+/// write steps of this form.
+///
+/// **Record order.** Nodes and cell slots are renumbered so that *every level is a prefix*: first
+/// the nodes (slots) of the coarsest level in their original order, then those that the steps bring
+/// back, in the order in which they come. Step j (0 <= j < stepCount) brings back node
+/// baseNodeCount + j. So the points of a level are the first baseNodeCount + k of all points, its
+/// cells the first of all slots, and a level is handed out by copying prefixes. `nodeOrder` and
+/// `cellOrder` lead back to the original numbers.
+///
+/// **A step** is a shape and a patch. The *shape* gives the corners of the old and the new cells in
+/// numbers local to the patch (0 = the removed node); equal shapes are stored once. The *patch*
+/// lists the slots of the new cells, then the nodes that no new cell has (only when the shape says
+/// so). The remaining old cells have the slots just behind the end of the coarser level. All other
+/// local numbers are found by reading the cells themselves, in either direction.
+///
+/// Source: [K03] S. Krivograd, G. Hren, B. Zalik, A. Jezernik: A Fast Triangular-Mesh
+/// Decimation-and-Undecimation Algorithm for Transferring FEM Results via the Web, Journal of
+/// Mechanical Engineering 49 (2003), section 2 and fig. 6 (two lists at each removed node: removed
+/// cells and new cells). Kept here as shapes, which needs a third of the memory of the lists.
+///
+/// Memory: about 36 bytes a removed node on triangle meshes (shape 4, slots 16, error 4, original
+/// numbers 12), plus the shape table (tens to hundreds of KiB).
+
+#ifndef UNDECIMATE_CORE_RECORD_H
+#define UNDECIMATE_CORE_RECORD_H
+
+#include "types.h"
+
+#include <memory>
+#include <vector>
+
+namespace undecimate
+{
+
+/// Largest number of old cells in a step; nodes with more cells are kept until they have fewer.
+constexpr int kMaximumPatchCells = 64;
+
+/// A record as flat arrays in somebody's memory (see the file comment for their meaning).
+///
+/// The table of shapes: shape s is the bytes [shapeOffsets[s], shapeOffsets[s + 1]) of `shapes`:
+///   old, new, extra                  numbers of old cells, new cells, nodes listed in the patch
+///   old * cornersPerCell bytes       local corners of the old cells; the first `new` of them have
+///                                    the slots that the patch lists
+///   new * cornersPerCell bytes       local corners of the new cells
+///   new bytes, if hasSources         which old cell (0..old-1) each new cell takes its values from
+/// Local number 0 is the removed node, 1.. the other nodes of the patch. The last `extra` local
+/// numbers are those that no new cell has.
+struct RecordView
+{
+  Index nodeCount = 0;     ///< of the finest level
+  Index cellCount = 0;     ///< of the finest level
+  Index baseNodeCount = 0; ///< of the coarsest level
+  Index baseCellCount = 0; ///< of the coarsest level
+  Index stepCount = 0;     ///< nodeCount - baseNodeCount
+  Index shapeCount = 0;
+  int cornersPerCell = 3;
+  bool hasSources = false; ///< the source of each cell's values is recorded
+
+  const Index* nodeOrder = nullptr;     ///< nodeCount: original number of a node
+  const Index* cellOrder = nullptr;     ///< cellCount: original number of a slot's cell
+  const Index* stepShapes = nullptr;    ///< stepCount
+  const float* stepErrors = nullptr;    ///< stepCount, never increasing: error before step j is undone
+  const Index* patches = nullptr;       ///< patchSize: slots and extra nodes, step after step
+  const Index* shapeOffsets = nullptr;  ///< shapeCount + 1
+  const unsigned char* shapes = nullptr; ///< shapeOffsets[shapeCount] bytes
+  const Index* baseSources = nullptr;   ///< baseCellCount if hasSources: original cell number
+  const Index* lostSources = nullptr;   ///< lostSourceSize if hasSources: of old cells without heir
+  std::int64_t patchSize = 0;
+  std::int64_t lostSourceSize = 0;
+};
+
+/// A record that owns its arrays.
+struct Record
+{
+  Index nodeCount = 0;
+  Index cellCount = 0;
+  Index baseNodeCount = 0;
+  Index baseCellCount = 0;
+  int cornersPerCell = 3;
+  bool hasSources = false;
+
+  std::vector<Index> nodeOrder;
+  std::vector<Index> cellOrder;
+  std::vector<Index> stepShapes;
+  std::vector<float> stepErrors;
+  std::vector<Index> patches;
+  std::vector<Index> shapeOffsets{ 0 };
+  std::vector<unsigned char> shapes;
+  std::vector<Index> baseSources;
+  std::vector<Index> lostSources;
+
+  RecordView view() const;
+
+  /// Bytes of all arrays.
+  std::size_t byteSize() const;
+};
+
+/// Check that a record can be walked without ever leaving its arrays or those of the mesh, whatever
+/// its bytes are: counts, ranges, shapes, order of the errors, permutations.
+/// @param baseCells cornersPerCell * baseCellCount node numbers in record order
+/// @return InvalidRecord with the array and the entry that is wrong
+/// Complexity: O(record).
+Outcome validateRecord(const RecordView& record, const Index* baseCells);
+
+/// Written by a decimator, step by step, in original numbers; finish() turns it into record order.
+class RecordBuilder
+{
+public:
+  /// @param trackSources also record from which original cell each new cell takes its values
+  RecordBuilder(Index nodeCount, Index cellCount, bool trackSources);
+  ~RecordBuilder();
+
+  /// One step. Triangles are given by their corners in original node numbers.
+  struct Step
+  {
+    Index node = kNone;               ///< the removed node
+    int oldCount = 0;                 ///< 1 .. kMaximumPatchCells
+    int newCount = 0;                 ///< < oldCount
+    const Index* slots = nullptr;     ///< oldCount slots; the new cells take the first newCount
+    const Index* oldCells = nullptr;  ///< 3 * oldCount corners, as they stand in the slots
+    const Index* newCells = nullptr;  ///< 3 * newCount corners
+    const unsigned char* sources = nullptr; ///< newCount: old cell whose values the new one takes
+    double error = 0.0;               ///< of this step; the record keeps the maximum so far
+  };
+  void append(const Step& step);
+
+  /// Steps so far.
+  Index stepCount() const;
+
+  /// Largest error so far.
+  double error() const;
+
+  /// Renumber everything to record order. The builder is empty afterwards.
+  /// @param[in] cells 3 * cellCount corners as the last step left them (original numbers)
+  /// @param[out] baseCells the cells of the coarsest level, in record order
+  /// Complexity: O(nodes + cells + record), in place but for the two orders.
+  Record finish(const Index* cells, std::vector<Index>& baseCells);
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> internals_;
+};
+
+} // namespace undecimate
+
+#endif

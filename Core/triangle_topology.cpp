@@ -1,0 +1,392 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "triangle_topology.h"
+
+#include <algorithm>
+
+namespace undecimate
+{
+
+TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount)
+  : triangles_(triangleCount)
+  , cornerAt_(nodeCount, kNoCorner)
+  , kinds_(nodeCount, NodeKind::Unused)
+{
+  for (Index t = 0; t < triangleCount; ++t)
+  {
+    const Index* nodes = triangles + std::size_t{ 3 } * t;
+    this->triangles_[t] = { { nodes[0], nodes[1], nodes[2] },
+      { kNoCorner, kNoCorner, kNoCorner }, kNone, 0 };
+  }
+  this->connect();
+  this->markDegenerate();
+  this->markNodes();
+}
+
+// Find the triangles on either side of each edge. The corners are bucketed by the smaller node of
+// the opposite edge, so that each bucket is a handful of edges.
+void TriangleTopology::connect()
+{
+  const Index triangleCount = static_cast<Index>(this->triangles_.size());
+  const std::size_t nodeCount = this->kinds_.size();
+  std::vector<Index> begin(nodeCount + 1, 0);
+  const auto smaller = [](const Triangle& t, int c) {
+    return std::min(t.nodes[nextCorner(c)], t.nodes[previousCorner(c)]);
+  };
+  for (const Triangle& t : this->triangles_)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      ++begin[smaller(t, c) + 1];
+    }
+  }
+  for (std::size_t i = 0; i < nodeCount; ++i)
+  {
+    begin[i + 1] += begin[i];
+  }
+  struct Edge
+  {
+    Index larger;
+    Corner corner;
+  };
+  std::vector<Edge> edges(std::size_t{ 3 } * triangleCount);
+  {
+    std::vector<Index> fill(begin.begin(), begin.end() - 1);
+    for (Index i = 0; i < triangleCount; ++i)
+    {
+      const Triangle& t = this->triangles_[i];
+      for (int c = 0; c < 3; ++c)
+      {
+        const Index a = t.nodes[nextCorner(c)];
+        const Index b = t.nodes[previousCorner(c)];
+        edges[fill[std::min(a, b)]++] = { std::max(a, b), makeCorner(i, c) };
+      }
+    }
+  }
+  for (std::size_t node = 0; node < nodeCount; ++node)
+  {
+    const auto first = edges.begin() + begin[node];
+    const auto last = edges.begin() + begin[node + 1];
+    // A stable order keeps the result independent of the standard library.
+    std::sort(first, last, [](const Edge& a, const Edge& b) {
+      return a.larger != b.larger ? a.larger < b.larger : a.corner < b.corner;
+    });
+    for (auto edge = first; edge != last;)
+    {
+      auto end = edge + 1;
+      while (end != last && end->larger == edge->larger)
+      {
+        ++end;
+      }
+      const auto count = end - edge;
+      const auto startOf = [this](Corner corner) {
+        const Triangle& t = this->triangles_[triangleOf(corner)];
+        return t.nodes[nextCorner(cornerOf(corner))];
+      };
+      if (count == 2 && startOf(edge[0].corner) != startOf(edge[1].corner))
+      {
+        this->triangles_[triangleOf(edge[0].corner)].across[cornerOf(edge[0].corner)] =
+          edge[1].corner;
+        this->triangles_[triangleOf(edge[1].corner)].across[cornerOf(edge[1].corner)] =
+          edge[0].corner;
+      }
+      else if (count >= 2)
+      {
+        this->kinds_[node] = NodeKind::NonManifold;
+        this->kinds_[edge->larger] = NodeKind::NonManifold;
+      }
+      edge = end;
+    }
+  }
+}
+
+// Triangles with a node twice, and triangles that exist twice (in either orientation).
+void TriangleTopology::markDegenerate()
+{
+  const auto mark = [this](const Triangle& t) {
+    for (const Index node : t.nodes)
+    {
+      this->kinds_[node] = NodeKind::Degenerate;
+    }
+  };
+  for (const Triangle& t : this->triangles_)
+  {
+    if (t.nodes[0] == t.nodes[1] || t.nodes[1] == t.nodes[2] || t.nodes[2] == t.nodes[0])
+    {
+      mark(t);
+      continue;
+    }
+    // Two copies share all edges. If each edge has just the two of them they are neighbours; else
+    // their edges are non-manifold or misoriented, and their nodes are kept for that.
+    const Corner a = t.across[0];
+    if (a != kNoCorner && t.across[1] != kNoCorner &&
+      triangleOf(a) == triangleOf(t.across[1]))
+    {
+      mark(t);
+    }
+  }
+}
+
+void TriangleTopology::markNodes()
+{
+  const std::size_t nodeCount = this->kinds_.size();
+  std::vector<Index> uses(nodeCount, 0);
+  std::vector<unsigned char> open(nodeCount, 0); // fans' ends: boundary edges that leave the node
+  for (Index i = 0; i < static_cast<Index>(this->triangles_.size()); ++i)
+  {
+    const Triangle& t = this->triangles_[i];
+    for (int c = 0; c < 3; ++c)
+    {
+      const Index node = t.nodes[c];
+      ++uses[node];
+      // The first triangle of an open fan has nothing behind its edge node -> next node.
+      const bool start = t.across[previousCorner(c)] == kNoCorner;
+      if (start && open[node] < 2)
+      {
+        ++open[node];
+      }
+      if (start || this->cornerAt_[node] == kNoCorner)
+      {
+        this->cornerAt_[node] = makeCorner(i, c);
+      }
+    }
+  }
+  for (std::size_t node = 0; node < nodeCount; ++node)
+  {
+    if (uses[node] == 0 || this->kinds_[node] != NodeKind::Unused)
+    {
+      continue;
+    }
+    // One fan must take in all triangles of the node, else surfaces just touch there.
+    Index count = 0;
+    const Corner start = this->cornerAt_[node];
+    Corner corner = start;
+    do
+    {
+      ++count;
+      const Triangle& t = this->triangles_[triangleOf(corner)];
+      const Corner opposite = t.across[nextCorner(cornerOf(corner))];
+      corner = opposite == kNoCorner
+        ? kNoCorner
+        : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
+    } while (corner != kNoCorner && corner != start && count <= uses[node]);
+    this->kinds_[node] = count != uses[node] ? NodeKind::NonManifold
+      : open[node] == 0                      ? NodeKind::Removable
+                                             : NodeKind::Boundary;
+  }
+}
+
+bool TriangleTopology::gather(Index node, Hole& hole) const
+{
+  Corner corner = this->cornerAt_[node];
+  if (this->kinds_[node] == NodeKind::Boundary)
+  {
+    // Back to the first triangle of the fan.
+    for (;;)
+    {
+      const Triangle& t = this->triangles_[triangleOf(corner)];
+      const Corner opposite = t.across[previousCorner(cornerOf(corner))];
+      if (opposite == kNoCorner)
+      {
+        break;
+      }
+      corner = makeCorner(triangleOf(opposite), previousCorner(cornerOf(opposite)));
+    }
+  }
+  hole.node = node;
+  hole.boundary = false;
+  int count = 0;
+  const Corner start = corner;
+  for (;;)
+  {
+    if (count == kMaximumPatchCells)
+    {
+      return false;
+    }
+    const Triangle& t = this->triangles_[triangleOf(corner)];
+    const int c = cornerOf(corner);
+    hole.corners[count] = corner;
+    hole.ring[count] = t.nodes[nextCorner(c)];
+    hole.outer[count] = t.across[c];
+    ++count;
+    const Corner opposite = t.across[nextCorner(c)];
+    if (opposite == kNoCorner)
+    {
+      hole.boundary = true;
+      hole.ring[count] = t.nodes[previousCorner(c)];
+      break;
+    }
+    corner = makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
+    if (corner == start)
+    {
+      break;
+    }
+  }
+  hole.triangleCount = count;
+  hole.size = hole.boundary ? count + 1 : count;
+  return true;
+}
+
+bool TriangleTopology::haveEdge(Index a, Index b) const
+{
+  const Corner start = this->cornerAt_[a];
+  Corner corner = start;
+  for (;;)
+  {
+    const Triangle& t = this->triangles_[triangleOf(corner)];
+    const int c = cornerOf(corner);
+    if (t.nodes[nextCorner(c)] == b || t.nodes[previousCorner(c)] == b)
+    {
+      return true;
+    }
+    const Corner opposite = t.across[nextCorner(c)];
+    if (opposite == kNoCorner)
+    {
+      break;
+    }
+    corner = makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
+    if (corner == start)
+    {
+      return false;
+    }
+  }
+  // An open fan that was not entered at its first triangle: the rest lies the other way.
+  corner = start;
+  for (;;)
+  {
+    const Triangle& t = this->triangles_[triangleOf(corner)];
+    const int c = cornerOf(corner);
+    if (t.nodes[nextCorner(c)] == b)
+    {
+      return true;
+    }
+    const Corner opposite = t.across[previousCorner(c)];
+    if (opposite == kNoCorner)
+    {
+      return false;
+    }
+    corner = makeCorner(triangleOf(opposite), previousCorner(cornerOf(opposite)));
+  }
+}
+
+namespace
+{
+// All triangles of such a node are one fan, even if the node itself is to be kept.
+bool isOneFan(NodeKind kind)
+{
+  return kind == NodeKind::Removable || kind == NodeKind::Boundary;
+}
+} // namespace
+
+bool TriangleTopology::mayHaveEdge(Index a, Index b) const
+{
+  if (isOneFan(this->kinds_[a]))
+  {
+    return this->haveEdge(a, b);
+  }
+  return !isOneFan(this->kinds_[b]) || this->haveEdge(b, a);
+}
+
+bool TriangleTopology::fillsExistingTriangle(const Hole& hole) const
+{
+  for (int i = 0; i < hole.triangleCount; ++i)
+  {
+    if (hole.outer[i] == kNoCorner)
+    {
+      continue;
+    }
+    const Triangle& t = this->triangles_[triangleOf(hole.outer[i])];
+    const Index third = t.nodes[cornerOf(hole.outer[i])];
+    if (third == hole.ring[0] || third == hole.ring[1] || third == hole.ring[2])
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void TriangleTopology::replace(
+  const Hole& hole, const HoleTriangulation& filling, const unsigned char* order)
+{
+  const auto slot = [&](int i) { return triangleOf(hole.corners[order[i]]); };
+  const auto link = [this](Corner a, Corner b) {
+    this->triangles_[triangleOf(a)].across[cornerOf(a)] = b;
+    if (b != kNoCorner)
+    {
+      this->triangles_[triangleOf(b)].across[cornerOf(b)] = a;
+    }
+  };
+  if (filling.count == 0)
+  {
+    // A boundary node with one triangle: the triangle behind it gets a boundary edge.
+    const Corner outer = hole.outer[0];
+    this->triangles_[triangleOf(outer)].across[cornerOf(outer)] = kNoCorner;
+    this->cornerAt_[hole.ring[0]] =
+      makeCorner(triangleOf(outer), previousCorner(cornerOf(outer)));
+    this->cornerAt_[hole.ring[1]] = makeCorner(triangleOf(outer), nextCorner(cornerOf(outer)));
+  }
+  // Diagonals waiting for their other side: at most size - 3.
+  struct Waiting
+  {
+    int from;
+    int to;
+    Corner corner;
+  };
+  std::array<Waiting, kMaximumPatchCells> waiting;
+  int waitingCount = 0;
+  const int last = hole.size - 1;
+  for (int i = 0; i < filling.count; ++i)
+  {
+    const Index s = slot(i);
+    Triangle& t = this->triangles_[s];
+    for (int c = 0; c < 3; ++c)
+    {
+      t.nodes[c] = hole.ring[filling.triangles[i][c]];
+      this->cornerAt_[t.nodes[c]] = makeCorner(s, c);
+    }
+  }
+  for (int i = 0; i < filling.count; ++i)
+  {
+    const Index s = slot(i);
+    for (int c = 0; c < 3; ++c)
+    {
+      const int from = filling.triangles[i][nextCorner(c)];
+      const int to = filling.triangles[i][previousCorner(c)];
+      const Corner here = makeCorner(s, c);
+      if (to == from + 1 || (from == last && to == 0))
+      {
+        link(here, hole.boundary && from == last ? kNoCorner : hole.outer[from]);
+        continue;
+      }
+      int w = 0;
+      while (w < waitingCount && !(waiting[w].from == to && waiting[w].to == from))
+      {
+        ++w;
+      }
+      if (w < waitingCount)
+      {
+        link(here, waiting[w].corner);
+        waiting[w] = waiting[--waitingCount];
+      }
+      else
+      {
+        waiting[waitingCount++] = { from, to, here };
+      }
+    }
+  }
+  this->kinds_[hole.node] = NodeKind::Removed;
+}
+
+std::vector<Index> TriangleTopology::nodes() const
+{
+  std::vector<Index> nodes(3 * this->triangles_.size());
+  Index* out = nodes.data();
+  for (const Triangle& t : this->triangles_)
+  {
+    out = std::copy(t.nodes.begin(), t.nodes.end(), out);
+  }
+  return nodes;
+}
+
+} // namespace undecimate

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file triangle_topology.h
+/// @brief Which triangles meet at an edge and around a node, kept up to date while nodes go.
+
+#ifndef UNDECIMATE_CORE_TRIANGLE_TOPOLOGY_H
+#define UNDECIMATE_CORE_TRIANGLE_TOPOLOGY_H
+
+#include "record.h"
+#include "types.h"
+
+#include <array>
+#include <vector>
+
+namespace undecimate
+{
+
+/// A corner of a triangle: triangle << 2 | corner (0..2).
+using Corner = std::uint32_t;
+constexpr Corner kNoCorner = ~Corner{ 0 };
+
+inline Index triangleOf(Corner corner)
+{
+  return static_cast<Index>(corner >> 2);
+}
+inline int cornerOf(Corner corner)
+{
+  return static_cast<int>(corner & 3);
+}
+inline Corner makeCorner(Index triangle, int corner)
+{
+  return static_cast<Corner>(triangle) << 2 | static_cast<Corner>(corner);
+}
+inline int nextCorner(int corner)
+{
+  return corner == 2 ? 0 : corner + 1;
+}
+inline int previousCorner(int corner)
+{
+  return corner == 0 ? 2 : corner - 1;
+}
+
+/// The hole that the removal of a node leaves: a polygon of `size` ring nodes, counterclockwise as
+/// the surface is oriented, and the triangles that filled it.
+struct Hole
+{
+  Index node = kNone;
+  bool boundary = false; ///< the node is on the boundary: the ring is open, and the polygon's last
+                         ///< edge, ring[size - 1] -> ring[0], is the new boundary edge
+  int triangleCount = 0; ///< size, or size - 1 at the boundary
+  int size = 0;
+  std::array<Index, kMaximumPatchCells + 1> ring;
+  std::array<Corner, kMaximumPatchCells> corners; ///< of the node: triangle i is (node, ring[i],
+                                                  ///< ring[i + 1])
+  std::array<Corner, kMaximumPatchCells> outer; ///< behind ring edge i: corner of the triangle there
+                                                ///< that is opposite to the edge, or kNoCorner
+};
+
+/// A triangulation of a hole: corners are positions in Hole::ring.
+struct HoleTriangulation
+{
+  int count = 0; ///< Hole::size - 2 triangles
+  std::array<std::array<unsigned char, 3>, kMaximumPatchCells> triangles;
+};
+
+/// Why a node is not to be removed.
+enum class NodeKind : unsigned char
+{
+  Removable,
+  Boundary,    ///< removable, at the boundary
+  Requested,   ///< the caller wants it kept
+  NonFinite,   ///< a coordinate is NaN or infinite
+  Unused,      ///< no triangle has it
+  Degenerate,  ///< of a triangle that has a node twice, or exists twice
+  NonManifold, ///< on an edge with more than two or with misoriented triangles, or a bow tie
+  Removed
+};
+
+/// Triangles with their neighbours across each edge (a corner table), and one corner for each node.
+///
+/// Edges between manifold nodes have one or two triangles; an edge of more than two, or between
+/// misoriented triangles, is open for all of them and its nodes are NonManifold.
+/// Memory: 32 bytes a triangle and 5 bytes a node. Construction O(nodes + triangles).
+class TriangleTopology
+{
+public:
+  struct Triangle
+  {
+    std::array<Index, 3> nodes;
+    std::array<Corner, 3> across; ///< across[c]: the corner opposite to this triangle's corner c
+    Index first;                  ///< free for the user: head of a list, kNone at first
+    Index spare;                  ///< free for the user, 0 at first
+  };
+
+  /// @param triangles 3 * triangleCount node numbers in [0, nodeCount)
+  TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount);
+
+  Triangle& triangle(Index t) { return this->triangles_[t]; }
+  const Triangle& triangle(Index t) const { return this->triangles_[t]; }
+  NodeKind kind(Index node) const { return this->kinds_[node]; }
+  void setKind(Index node, NodeKind kind) { this->kinds_[node] = kind; }
+  bool removable(Index node) const { return this->kinds_[node] <= NodeKind::Boundary; }
+  Corner cornerAt(Index node) const { return this->cornerAt_[node]; }
+
+  /// Gather the ring of a removable node.
+  /// @return false if it has more than kMaximumPatchCells triangles
+  bool gather(Index node, Hole& hole) const;
+
+  /// Whether two nodes, of which the first is removable or Boundary, share an edge.
+  /// O(triangles around a).
+  bool haveEdge(Index a, Index b) const;
+
+  /// Whether an edge exists or cannot be ruled out (both nodes have open or several fans).
+  bool mayHaveEdge(Index a, Index b) const;
+
+  /// Whether the one triangle that would fill a hole of three nodes exists already.
+  bool fillsExistingTriangle(const Hole& hole) const;
+
+  /// Put a triangulation in the place of the hole's triangles: new triangle i takes the slot of old
+  /// triangle order[i]. The slots order[count..] are free afterwards.
+  void replace(const Hole& hole, const HoleTriangulation& filling, const unsigned char* order);
+
+  /// Nodes of all slots as they stand (3 a slot), for RecordBuilder::finish().
+  std::vector<Index> nodes() const;
+
+private:
+  void connect();
+  void markDegenerate();
+  void markNodes();
+
+  std::vector<Triangle> triangles_;
+  std::vector<Corner> cornerAt_;
+  std::vector<NodeKind> kinds_;
+};
+
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "undecimation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+namespace undecimate
+{
+
+namespace
+{
+
+constexpr int kCorners = 3;
+
+// A shape's parts (see RecordView).
+struct Shape
+{
+  int oldCount;
+  int newCount;
+  int extra;
+  const unsigned char* oldCells;
+  const unsigned char* newCells;
+  const unsigned char* sources;
+
+  Shape(const RecordView& record, Index step)
+  {
+    const unsigned char* bytes = record.shapes + record.shapeOffsets[record.stepShapes[step]];
+    this->oldCount = bytes[0];
+    this->newCount = bytes[1];
+    this->extra = bytes[2];
+    this->oldCells = bytes + 3;
+    this->newCells = this->oldCells + kCorners * this->oldCount;
+    this->sources = this->newCells + kCorners * this->newCount;
+  }
+};
+
+} // namespace
+
+Outcome Undecimation::open(const RecordView& record, const Index* baseCells)
+{
+  *this = Undecimation();
+  try
+  {
+    if (Outcome o = validateRecord(record, baseCells); !o)
+    {
+      return o;
+    }
+    this->cells_.resize(std::size_t{ kCorners } * record.cellCount);
+    std::copy_n(baseCells, std::size_t{ kCorners } * record.baseCellCount, this->cells_.begin());
+    if (record.hasSources)
+    {
+      this->sources_.resize(record.cellCount);
+      std::copy_n(record.baseSources, record.baseCellCount, this->sources_.begin());
+    }
+  }
+  catch (const std::bad_alloc&)
+  {
+    *this = Undecimation();
+    return { Status::OutOfMemory, "Not enough memory to open the record." };
+  }
+  this->record_ = record;
+  this->cellCount_ = record.baseCellCount;
+  return {};
+}
+
+void Undecimation::moveTo(Index steps)
+{
+  const Index goal = std::clamp<Index>(steps, 0, this->record_.stepCount);
+  while (this->steps_ < goal)
+  {
+    this->refine();
+  }
+  while (this->steps_ > goal)
+  {
+    this->coarsen();
+  }
+}
+
+Index Undecimation::stepsForLevel(double level) const
+{
+  if (!(level > 0.0))
+  {
+    return 0;
+  }
+  return static_cast<Index>(std::llround(std::min(level, 1.0) * this->record_.stepCount));
+}
+
+Index Undecimation::stepsForError(double error) const
+{
+  const float* begin = this->record_.stepErrors;
+  const float* end = begin + this->record_.stepCount;
+  return static_cast<Index>(
+    std::partition_point(begin, end, [error](float e) { return e > error; }) - begin);
+}
+
+double Undecimation::error() const
+{
+  return this->steps_ < this->record_.stepCount ? this->record_.stepErrors[this->steps_] : 0.0;
+}
+
+// Bring node baseNodeCount + steps_ back: old cells take the place of the new ones.
+void Undecimation::refine()
+{
+  const Shape shape(this->record_, this->steps_);
+  const Index* slots = this->record_.patches + this->patchPosition_;
+  Index* cells = this->cells_.data();
+  Index locals[256];
+  locals[0] = this->record_.baseNodeCount + this->steps_;
+  int largest = 0;
+  for (int i = 0; i < shape.newCount; ++i)
+  {
+    const Index* cell = cells + std::size_t{ kCorners } * slots[i];
+    for (int corner = 0; corner < kCorners; ++corner)
+    {
+      const int local = shape.newCells[kCorners * i + corner];
+      locals[local] = cell[corner];
+      largest = std::max(largest, local);
+    }
+  }
+  for (int i = 0; i < shape.extra; ++i)
+  {
+    locals[largest + 1 + i] = slots[shape.newCount + i];
+  }
+  for (int i = 0; i < shape.oldCount; ++i)
+  {
+    const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
+    Index* cell = cells + std::size_t{ kCorners } * slot;
+    for (int corner = 0; corner < kCorners; ++corner)
+    {
+      cell[corner] = locals[shape.oldCells[kCorners * i + corner]];
+    }
+  }
+  if (this->record_.hasSources)
+  {
+    Index old[kMaximumPatchCells];
+    std::fill_n(old, shape.oldCount, kNone);
+    for (int i = 0; i < shape.newCount; ++i)
+    {
+      old[shape.sources[i]] = this->sources_[slots[i]];
+    }
+    for (int i = 0; i < shape.oldCount; ++i)
+    {
+      const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
+      this->sources_[slot] =
+        old[i] != kNone ? old[i] : this->record_.lostSources[this->lostPosition_++];
+    }
+  }
+  this->patchPosition_ += shape.newCount + shape.extra;
+  this->cellCount_ += shape.oldCount - shape.newCount;
+  ++this->steps_;
+}
+
+// The reverse of refine().
+void Undecimation::coarsen()
+{
+  --this->steps_;
+  const Shape shape(this->record_, this->steps_);
+  this->patchPosition_ -= shape.newCount + shape.extra;
+  this->cellCount_ -= shape.oldCount - shape.newCount;
+  const Index* slots = this->record_.patches + this->patchPosition_;
+  Index* cells = this->cells_.data();
+  Index locals[256];
+  for (int i = 0; i < shape.oldCount; ++i)
+  {
+    const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
+    const Index* cell = cells + std::size_t{ kCorners } * slot;
+    for (int corner = 0; corner < kCorners; ++corner)
+    {
+      locals[shape.oldCells[kCorners * i + corner]] = cell[corner];
+    }
+  }
+  for (int i = 0; i < shape.newCount; ++i)
+  {
+    Index* cell = cells + std::size_t{ kCorners } * slots[i];
+    for (int corner = 0; corner < kCorners; ++corner)
+    {
+      cell[corner] = locals[shape.newCells[kCorners * i + corner]];
+    }
+  }
+  if (this->record_.hasSources)
+  {
+    Index old[kMaximumPatchCells];
+    std::uint64_t heirs = 0;
+    for (int i = 0; i < shape.oldCount; ++i)
+    {
+      const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
+      old[i] = this->sources_[slot];
+    }
+    for (int i = 0; i < shape.newCount; ++i)
+    {
+      heirs |= std::uint64_t{ 1 } << shape.sources[i];
+      this->sources_[slots[i]] = old[shape.sources[i]];
+    }
+    this->lostPosition_ -= shape.oldCount - __builtin_popcountll(heirs);
+  }
+}
+
+} // namespace undecimate

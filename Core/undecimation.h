@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file undecimation.h
+/// @brief Walks a record to any level, in either direction.
+///
+/// Source: [K03] section 2. A node comes back by putting the old cells of its step in the place of
+/// the new ones; it goes again by the reverse. Reads any record, whoever wrote it.
+
+#ifndef UNDECIMATE_CORE_UNDECIMATION_H
+#define UNDECIMATE_CORE_UNDECIMATION_H
+
+#include "record.h"
+
+#include <vector>
+
+namespace undecimate
+{
+
+/// A cursor on a record. Step count k in [0, stepCount]: 0 is the coarsest level (level 0), stepCount
+/// the original mesh (level 1). All numbers that it hands out are in record order.
+///
+/// Memory: 12 bytes a triangle of the original mesh, 4 more if sources are recorded.
+class Undecimation
+{
+public:
+  /// Check the record and stand at level 0. The record's arrays must outlive the cursor's use.
+  /// @param record the record
+  /// @param baseCells the cells of the coarsest level, in record order; copied
+  /// @return InvalidRecord, OutOfMemory or Ok; unless Ok the cursor is closed
+  Outcome open(const RecordView& record, const Index* baseCells);
+
+  /// Go to the level at which `steps` removed nodes are back (clamped to [0, stepCount]).
+  /// Complexity: O(|steps - current|).
+  void moveTo(Index steps);
+
+  /// Steps at a level: a fraction of the removed nodes, in [0, 1] (clamped; NaN counts as 0).
+  Index stepsForLevel(double level) const;
+
+  /// The fewest steps whose error is at most `error`. Complexity: O(log stepCount).
+  Index stepsForError(double error) const;
+
+  Index steps() const { return this->steps_; }
+  Index stepCount() const { return this->record_.stepCount; }
+  Index nodeCount() const { return this->record_.baseNodeCount + this->steps_; }
+  Index cellCount() const { return this->cellCount_; }
+
+  /// Error of the current level as the record has it; 0 at level 1.
+  double error() const;
+
+  /// cornersPerCell * cellCount() node numbers of the current level; valid until the next move.
+  const Index* cells() const { return this->cells_.data(); }
+
+  /// Original number of the cell whose values each cell shows; null if the record has no sources
+  /// (then a cell of slot s shows the values of original cell cellOrder[s]).
+  const Index* sources() const
+  {
+    return this->record_.hasSources ? this->sources_.data() : nullptr;
+  }
+
+  const RecordView& record() const { return this->record_; }
+
+private:
+  void refine();
+  void coarsen();
+
+  RecordView record_;
+  std::vector<Index> cells_;
+  std::vector<Index> sources_;
+  Index steps_ = 0;
+  Index cellCount_ = 0;
+  std::int64_t patchPosition_ = 0; // in record_.patches: first entry of step steps_
+  std::int64_t lostPosition_ = 0;  // in record_.lostSources
+};
+
+} // namespace undecimate
+
+#endif
