@@ -1,0 +1,197 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of a mesh beside its nodal result, one per level and one of all levels.
+
+All of them share one camera, one colour map and one range. Needs a display (xvfb-run)."""
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import (
+    vtkActor, vtkActor2D, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextMapper,
+    vtkWindowToImageFilter)
+import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the OpenGL back end)
+
+INK = (0.13, 0.15, 0.18)
+PAPER = (1.0, 1.0, 1.0)
+
+# Viridis at nine even places
+VIRIDIS = ((0.267, 0.005, 0.329), (0.279, 0.175, 0.483), (0.230, 0.322, 0.546),
+           (0.173, 0.449, 0.558), (0.128, 0.567, 0.551), (0.158, 0.684, 0.502),
+           (0.369, 0.789, 0.383), (0.678, 0.864, 0.190), (0.993, 0.906, 0.144))
+
+
+BANDS = 20
+
+
+def colour_map(low, high):
+    """Bands, as on a contour plot: their outlines show small differences that a smooth map hides."""
+    table = vtkLookupTable()
+    table.SetNumberOfTableValues(BANDS)
+    table.SetTableRange(low, high)
+    for i in range(BANDS):
+        at = i / (BANDS - 1) * (len(VIRIDIS) - 1)
+        k = min(int(at), len(VIRIDIS) - 2)
+        rgb = [a + (b - a) * (at - k) for a, b in zip(VIRIDIS[k], VIRIDIS[k + 1])]
+        table.SetTableValue(i, *rgb, 1.0)
+    return table
+
+
+FINE = 2  # drawn this many times larger, then averaged: thin lines stay even
+
+
+class Sheet:
+    """One window with meshes, words and a scalar bar at given places (pixels, from the lower left)."""
+
+    def __init__(self, width, height):
+        self.size = width, height
+        self.window = vtkRenderWindow()
+        self.window.SetOffScreenRendering(1)
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(FINE * width, FINE * height)
+        self.paper = vtkRenderer()
+        self.paper.SetBackground(*PAPER)
+        self.window.AddRenderer(self.paper)
+
+    def renderer(self, x, y, width, height):
+        renderer = vtkRenderer()
+        renderer.SetBackground(*PAPER)
+        renderer.SetViewport(x / self.size[0], y / self.size[1],
+                             (x + width) / self.size[0], (y + height) / self.size[1])
+        self.window.AddRenderer(renderer)
+        return renderer
+
+    def mesh(self, mesh, box, place, array=None, colours=None):
+        """A mesh, seen along -z; with its edges, or with an array in colours. `box`: bounds that fill
+        the place, so that all meshes are shown at the same scale."""
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputData(mesh)
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        look = actor.GetProperty()
+        look.LightingOff()
+        if array:
+            mapper.SetScalarModeToUsePointFieldData()
+            mapper.SelectColorArray(array)
+            mapper.SetLookupTable(colours)
+            mapper.UseLookupTableScalarRangeOn()
+            mapper.InterpolateScalarsBeforeMappingOn()
+        else:
+            mapper.ScalarVisibilityOff()
+            look.SetColor(0.93, 0.95, 0.97)
+        renderer = self.renderer(*place)
+        renderer.AddActor(actor)
+        if not array:
+            edges = vtkActor()
+            edges.SetMapper(mapper)
+            look = edges.GetProperty()
+            look.LightingOff()
+            look.SetRepresentationToWireframe()
+            look.SetColor(0.16, 0.25, 0.37)
+            look.SetOpacity(0.8)
+            look.SetLineWidth(0.6 * FINE)
+            edges.SetPosition(0, 0, 0.001 * (box[1] - box[0]))
+            renderer.AddActor(edges)
+        camera = renderer.GetActiveCamera()
+        camera.ParallelProjectionOn()
+        centre = [(box[i] + box[i + 1]) / 2 for i in (0, 2, 4)]
+        camera.SetFocalPoint(*centre)
+        camera.SetPosition(centre[0], centre[1], centre[2] + 1)
+        camera.SetParallelScale(max((box[3] - box[2]), (box[1] - box[0]) * place[3] / place[2]) * 0.505)
+        renderer.ResetCameraClippingRange()
+
+    def words(self, text, x, y, size, bold=False, centred=False, grey=False):
+        mapper = vtkTextMapper()
+        mapper.SetInput(text)
+        look = mapper.GetTextProperty()
+        look.SetFontFamilyToArial()
+        look.SetFontSize(FINE * size)
+        look.SetColor(*((0.38, 0.42, 0.47) if grey else INK))
+        look.SetBold(bold)
+        if centred:
+            look.SetJustificationToCentered()
+        actor = vtkActor2D()
+        actor.SetMapper(mapper)
+        actor.SetPosition(FINE * x, FINE * y)
+        self.paper.AddActor2D(actor)
+
+    def scalar_bar(self, colours, title, place, size):
+        bar = vtkScalarBarActor()
+        bar.SetLookupTable(colours)
+        bar.SetTitle(title)
+        bar.SetNumberOfLabels(6)
+        bar.SetLabelFormat("%.0f")
+        bar.UnconstrainedFontSizeOn()
+        bar.SetMaximumWidthInPixels(10000)
+        bar.SetMaximumHeightInPixels(10000)
+        bar.SetBarRatio(0.3)
+        bar.SetVerticalTitleSeparation(FINE * size // 2)
+        for look in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+            look.SetFontFamilyToArial()
+            look.SetFontSize(FINE * size)
+            look.SetColor(*INK)
+            look.ItalicOff()
+            look.BoldOff()
+            look.ShadowOff()
+        x, y, width, height = (FINE * i for i in place)
+        bar.GetPositionCoordinate().SetCoordinateSystemToDisplay()
+        bar.GetPositionCoordinate().SetValue(x, y)
+        bar.GetPosition2Coordinate().SetCoordinateSystemToDisplay()
+        bar.GetPosition2Coordinate().SetValue(width, height)
+        self.paper.AddActor2D(bar)
+
+    def write(self, path):
+        self.window.Render()
+        grab = vtkWindowToImageFilter()
+        grab.SetInput(self.window)
+        grab.ReadFrontBufferOff()
+        grab.ShouldRerenderOff()
+        grab.Update()
+        width, height = self.size
+        pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
+        pixels = pixels.reshape(height, FINE, width, FINE, 3).mean((1, 3)) + 0.5
+        image = vtkImageData()
+        image.SetDimensions(width, height, 1)
+        image.GetPointData().SetScalars(
+            numpy_to_vtk(pixels.astype(np.uint8).reshape(-1, 3), deep=1))
+        writer = vtkPNGWriter()
+        writer.SetFileName(path)
+        writer.SetCompressionLevel(9)
+        writer.SetInputData(image)
+        writer.Write()
+        if writer.GetErrorCode():
+            raise OSError("cannot write " + path)
+
+
+def draw_level(path, mesh, title, note, array, label, unit, limits, box):
+    """One level: the mesh with its edges, the result beside it, a scalar bar."""
+    sheet = Sheet(1500, 800)
+    colours = colour_map(*limits)
+    sheet.words(title, 30, 748, 28, bold=True)
+    sheet.words(note, 30, 716, 18, grey=True)
+    sheet.words(label, 720, 716, 18, grey=True)
+    sheet.mesh(mesh, box, (30, 25, 670, 670))
+    sheet.mesh(mesh, box, (720, 25, 670, 670), array, colours)
+    sheet.scalar_bar(colours, unit, (1405, 25, 85, 670), 18)
+    sheet.write(path)
+
+
+def draw_overview(path, levels, array, unit, limits, box):
+    """All levels side by side: meshes above, results below. levels: (mesh, caption, note)."""
+    tile, gap = 290, 14
+    width = 30 + len(levels) * (tile + gap) + 90
+    top = 2 * tile + gap + 30
+    sheet = Sheet(width, top + 70)
+    colours = colour_map(*limits)
+    for i, (mesh, caption, note) in enumerate(levels):
+        x = 30 + i * (tile + gap)
+        sheet.words(caption, x, top + 32, 18, bold=True)
+        sheet.words(note, x, top + 8, 15, grey=True)
+        sheet.mesh(mesh, box, (x, 20 + tile + gap, tile, tile))
+        sheet.mesh(mesh, box, (x, 20, tile, tile), array, colours)
+    sheet.scalar_bar(colours, unit, (width - 92, 20, 84, tile), 15)
+    sheet.write(path)
