@@ -119,11 +119,14 @@ void TriangleTopology::markDegenerate()
     }
     // Two copies share all edges. If each edge has just the two of them they are neighbours; else
     // their edges are non-manifold or misoriented, and their nodes are kept for that.
-    const Corner a = t.across[0];
-    if (a != kNoCorner && t.across[1] != kNoCorner &&
-      triangleOf(a) == triangleOf(t.across[1]))
+    for (int c = 0; c < 3; ++c)
     {
-      mark(t);
+      const Corner a = t.across[c];
+      const Corner b = t.across[nextCorner(c)];
+      if (a != kNoCorner && b != kNoCorner && triangleOf(a) == triangleOf(b))
+      {
+        mark(t);
+      }
     }
   }
 }
@@ -172,7 +175,7 @@ void TriangleTopology::markNodes()
         : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
     } while (corner != kNoCorner && corner != start && count <= uses[node]);
     this->kinds_[node] = count != uses[node] ? NodeKind::NonManifold
-      : open[node] == 0                      ? NodeKind::Removable
+      : open[node] == 0                      ? NodeKind::Interior
                                              : NodeKind::Boundary;
   }
 }
@@ -228,6 +231,7 @@ bool TriangleTopology::gather(Index node, Hole& hole) const
   return true;
 }
 
+// Whether a manifold node shares an edge with another one.
 bool TriangleTopology::haveEdge(Index a, Index b) const
 {
   const Corner start = this->cornerAt_[a];
@@ -270,24 +274,27 @@ bool TriangleTopology::haveEdge(Index a, Index b) const
   }
 }
 
-namespace
-{
-// All triangles of such a node are one fan, even if the node itself is to be kept.
-bool isOneFan(NodeKind kind)
-{
-  return kind == NodeKind::Removable || kind == NodeKind::Boundary;
-}
-} // namespace
-
 bool TriangleTopology::mayHaveEdge(Index a, Index b) const
 {
-  if (isOneFan(this->kinds_[a]))
+  if (this->isManifold(a))
   {
     return this->haveEdge(a, b);
   }
-  return !isOneFan(this->kinds_[b]) || this->haveEdge(b, a);
+  return !this->isManifold(b) || this->haveEdge(b, a);
 }
 
+bool TriangleTopology::isClosable(const Hole& hole) const
+{
+  if (hole.size == 2)
+  {
+    // A corner with one triangle goes if something is left behind its edge; a closed pair stays.
+    return hole.boundary && hole.outer[0] != kNoCorner;
+  }
+  return hole.boundary ? !this->mayHaveEdge(hole.ring[0], hole.ring[hole.size - 1])
+                       : hole.size > 3 || !this->fillsExistingTriangle(hole);
+}
+
+// Whether the one triangle that would fill a hole of three nodes exists already.
 bool TriangleTopology::fillsExistingTriangle(const Hole& hole) const
 {
   for (int i = 0; i < hole.triangleCount; ++i)

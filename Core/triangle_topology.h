@@ -64,13 +64,11 @@ struct HoleTriangulation
   std::array<std::array<unsigned char, 3>, kMaximumPatchCells> triangles;
 };
 
-/// Why a node is not to be removed.
+/// What the triangles around a node look like.
 enum class NodeKind : unsigned char
 {
-  Removable,
-  Boundary,    ///< removable, at the boundary
-  Requested,   ///< the caller wants it kept
-  NonFinite,   ///< a coordinate is NaN or infinite
+  Interior,    ///< one closed fan
+  Boundary,    ///< one open fan
   Unused,      ///< no triangle has it
   Degenerate,  ///< of a triangle that has a node twice, or exists twice
   NonManifold, ///< on an edge with more than two or with misoriented triangles, or a bow tie
@@ -96,26 +94,25 @@ public:
   /// @param triangles 3 * triangleCount node numbers in [0, nodeCount)
   TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount);
 
+  Index triangleCount() const { return static_cast<Index>(this->triangles_.size()); }
   Triangle& triangle(Index t) { return this->triangles_[t]; }
   const Triangle& triangle(Index t) const { return this->triangles_[t]; }
   NodeKind kind(Index node) const { return this->kinds_[node]; }
-  void setKind(Index node, NodeKind kind) { this->kinds_[node] = kind; }
-  bool removable(Index node) const { return this->kinds_[node] <= NodeKind::Boundary; }
-  Corner cornerAt(Index node) const { return this->cornerAt_[node]; }
 
-  /// Gather the ring of a removable node.
+  /// One fan, closed or open: only such nodes can be removed.
+  bool isManifold(Index node) const { return this->kinds_[node] <= NodeKind::Boundary; }
+
+  /// Gather the ring of a manifold node.
   /// @return false if it has more than kMaximumPatchCells triangles
   bool gather(Index node, Hole& hole) const;
 
-  /// Whether two nodes, of which the first is removable or Boundary, share an edge.
-  /// O(triangles around a).
-  bool haveEdge(Index a, Index b) const;
-
-  /// Whether an edge exists or cannot be ruled out (both nodes have open or several fans).
+  /// Whether two nodes share an edge, or, if neither is manifold, it cannot be ruled out.
+  /// O(triangles around a manifold one).
   bool mayHaveEdge(Index a, Index b) const;
 
-  /// Whether the one triangle that would fill a hole of three nodes exists already.
-  bool fillsExistingTriangle(const Hole& hole) const;
+  /// Whether a hole can be closed at all, whatever the triangulation: it has a polygon, the new
+  /// boundary edge does not exist, and a hole of three nodes would not repeat a triangle.
+  bool isClosable(const Hole& hole) const;
 
   /// Put a triangulation in the place of the hole's triangles: new triangle i takes the slot of old
   /// triangle order[i]. The slots order[count..] are free afterwards.
@@ -125,6 +122,8 @@ public:
   std::vector<Index> nodes() const;
 
 private:
+  bool haveEdge(Index a, Index b) const;
+  bool fillsExistingTriangle(const Hole& hole) const;
   void connect();
   void markDegenerate();
   void markNodes();

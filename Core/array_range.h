@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file array_range.h
+/// @brief Range of a nodal array, the unit of its errors.
+
+#ifndef UNDECIMATE_CORE_ARRAY_RANGE_H
+#define UNDECIMATE_CORE_ARRAY_RANGE_H
+
+#include "types.h"
+
+#include <vector>
+
+namespace undecimate
+{
+
+constexpr int kMaximumComponents = 9;
+
+struct ArrayRange
+{
+  double lowest[kMaximumComponents] = {}; ///< of each component, finite values only
+  double size = 0.0; ///< highest - lowest; vectors: diagonal of the box of all values
+};
+
+ArrayRange arrayRange(const NodalArrayView& array, Index nodeCount);
+
+/// Flag the nodes at which a component is NaN or infinite.
+void keepNonFinite(const NodalArrayView& array, std::vector<unsigned char>& kept);
+
+} // namespace undecimate
+
+#endif

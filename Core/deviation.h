@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file deviation.h
+/// @brief The criterion Deviation: how far the new surface is from the original one.
+///
+/// The cost of a way to fill the hole of a node is the largest of
+///   (a) the distance to the new triangles of the node, and of every node that was removed from the
+///       hole's triangles before;
+///   (b) the distance to the new triangles of the midpoints of the edges at the node;
+///   (c) the distance to the old triangles of the midpoints of the new edges and of the centroids of
+///       the new triangles;
+/// as a fraction of the diagonal of the bounding box. At the boundary also the distance of the
+/// removed boundary nodes to the new boundary edge. A nodal array adds to each sample of (a) its
+/// error, |interpolated - value| / range, times a weight.
+///
+/// All triangulations of holes of up to nine nodes are compared: their triangles are few (20 for six
+/// nodes, against 24 in all fans), so the distances to each are found once and combined. Larger holes
+/// compare ear cutting and the fans.
+///
+/// Samples are relative to the removed node and in single precision; orientation is decided in double
+/// precision.
+
+#ifndef UNDECIMATE_CORE_DEVIATION_H
+#define UNDECIMATE_CORE_DEVIATION_H
+
+#include "array_range.h"
+#include "mesh_points.h"
+#include "triangle_topology.h"
+
+#include <memory>
+#include <vector>
+
+namespace undecimate
+{
+
+class DeviationCriterion
+{
+public:
+  /// Neighbours of a removed node are evaluated when their turn comes.
+  static constexpr bool kLazy = true;
+
+  /// Nodes where an array is NaN or infinite are `kept`.
+  DeviationCriterion(TriangleTopology& topology, const MeshPoints& points,
+    const std::vector<NodalArrayView>& arrays, double scalarWeight,
+    std::vector<unsigned char>& kept);
+  ~DeviationCriterion();
+
+  /// Cost of the best triangulation; false if there is none.
+  bool evaluate(Index node, double& cost);
+
+  /// The best triangulation of a node's hole; false if there is none.
+  bool retriangulate(Index node, Hole& hole, HoleTriangulation& filling, double& cost);
+
+  /// Take note of a removal (of the node and filling of the last retriangulate()).
+  void removed(const Hole& hole, const HoleTriangulation& filling, const unsigned char* order);
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> internals_;
+};
+
+} // namespace undecimate
+
+#endif

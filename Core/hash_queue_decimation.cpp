@@ -1,0 +1,505 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "hash_queue_decimation.h"
+
+#include "cell_sources.h"
+#include "deviation.h"
+#include "mean_edge_criterion.h"
+#include "mesh_points.h"
+#include "triangle_topology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <new>
+#include <string>
+
+namespace undecimate
+{
+
+namespace
+{
+
+constexpr double kRightAngle = 90.0;
+
+/// Intervals of either spacing.
+class Intervals
+{
+public:
+  Intervals(const HashQueueDecimationOptions& options, const std::vector<float>& costs)
+  {
+    if (options.intervalSpacing == IntervalSpacing::Exponential)
+    {
+      float smallest = std::numeric_limits<float>::max();
+      float largest = 0.0F;
+      std::int64_t queued = 0;
+      for (const float cost : costs)
+      {
+        if (cost >= 0.0F)
+        {
+          smallest = std::min(smallest, cost);
+          largest = std::max(largest, cost);
+          ++queued;
+        }
+      }
+      // [K03] eq. 1: m = floor(n / k).
+      const double count = std::floor(static_cast<double>(queued) / options.intervalNodes);
+      this->exponential_ = std::make_unique<ExponentialIntervals>(std::min(smallest, largest),
+        largest, static_cast<Index>(std::clamp(count, 1.0, static_cast<double>(1 << 24))));
+    }
+  }
+
+  Index count() const
+  {
+    return this->exponential_ ? this->exponential_->count() : kLogarithmicIntervals;
+  }
+
+  Index of(double cost) const
+  {
+    return this->exponential_ ? this->exponential_->interval(cost)
+                              : logarithmicInterval(static_cast<float>(cost));
+  }
+
+private:
+  std::unique_ptr<ExponentialIntervals> exponential_;
+};
+
+/// Where to stop, in triangles and nodes that are left.
+struct Goal
+{
+  Index triangles = 0;
+  Index nodes = 0;
+  StopReason triangleReason = StopReason::TargetReduction;
+  double error = std::numeric_limits<double>::infinity();
+
+  Goal(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options)
+  {
+    const double left = (1.0 - options.targetReduction) * static_cast<double>(mesh.triangleCount);
+    // The rounding of 1 - 0.9 must not ask for a triangle more or less.
+    this->triangles = static_cast<Index>(std::ceil(left * (1.0 - 1e-12)));
+    if (options.targetTriangles > this->triangles)
+    {
+      this->triangles = static_cast<Index>(std::min(options.targetTriangles, mesh.triangleCount));
+      this->triangleReason = StopReason::TargetTriangles;
+    }
+    this->nodes = static_cast<Index>(std::min(options.targetNodes, mesh.nodeCount));
+    const double noLimit = options.criterion == Criterion::AngleToXYPlane ? kRightAngle : 1.0;
+    if (options.maximumError < noLimit)
+    {
+      this->error = options.maximumError / noLimit;
+    }
+  }
+};
+
+/// The algorithm of [K03] section 1, for any criterion.
+template <typename CriterionType>
+class Decimation
+{
+public:
+  Decimation(TriangleTopology& topology, const MeshPoints& points, CriterionType& criterion,
+    const std::vector<unsigned char>& kept, const HashQueueDecimationOptions& options,
+    const Goal& goal, Monitor& monitor)
+    : topology_(topology)
+    , points_(points)
+    , criterion_(criterion)
+    , kept_(kept)
+    , options_(options)
+    , goal_(goal)
+    , monitor_(monitor)
+    , nodeCount_(static_cast<Index>(kept.size()))
+    , trianglesLeft_(topology.triangleCount())
+    , nodesLeft_(this->nodeCount_)
+  {
+  }
+
+  Status run(HashQueueDecimationResult& result)
+  {
+    RecordBuilder builder(
+      this->nodeCount_, this->topology_.triangleCount(), this->options_.trackCellSources);
+    // Step 1: evaluate all nodes and arrange them in the hash table.
+    std::vector<float> costs;
+    if (!this->evaluateAll(costs))
+    {
+      return Status::Cancelled;
+    }
+    const Intervals intervals(this->options_, costs);
+    HashQueue queue(this->nodeCount_, intervals.count());
+    for (Index node = 0; node < this->nodeCount_; ++node)
+    {
+      if (costs[node] >= 0.0F)
+      {
+        queue.insert(node, intervals.of(costs[node]));
+      }
+    }
+    costs = {};
+
+    result.stopReason = StopReason::NoRemovableNode;
+    bool tooCostly = false;
+    const Index planned = std::max<Index>(1, this->trianglesLeft_ - this->goal_.triangles);
+    for (Index turn = 0; !this->atGoal(result.stopReason); ++turn)
+    {
+      if ((turn & 255) == 0 && !this->reportProgress(planned))
+      {
+        return Status::Cancelled;
+      }
+      // Step 2: the most suitable node.
+      const Index interval = queue.lowestInterval();
+      const Index node = queue.pop();
+      if (node == kNone)
+      {
+        if (tooCostly)
+        {
+          result.stopReason = StopReason::MaximumError;
+        }
+        break;
+      }
+      // Steps 3 to 5: remove it with its triangles and triangulate the hole. A node that cannot go
+      // now waits outside the queue until a neighbour goes.
+      double cost = 0.0;
+      if (!this->criterion_.retriangulate(node, this->hole_, this->filling_, cost))
+      {
+        continue;
+      }
+      const Index current = intervals.of(cost);
+      if (current > interval && current > queue.lowestInterval() && !queue.empty())
+      {
+        queue.insert(node, current);
+        continue;
+      }
+      if (cost > this->goal_.error)
+      {
+        tooCostly = true;
+        continue;
+      }
+      this->remove(builder, cost);
+      // Step 6: re-evaluate the neighbours; they go to the end of their interval's queue.
+      this->reevaluate(queue, intervals, interval);
+      // Step 7: back to step 2.
+    }
+    result.error = builder.error();
+    result.record = builder.finish(this->topology_.nodes().data(), result.baseTriangles);
+    return this->monitor_.update(1.0) ? Status::Ok : Status::Cancelled;
+  }
+
+private:
+  // Share of the progress that the first evaluation gets.
+  static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
+
+  bool evaluateAll(std::vector<float>& costs)
+  {
+    costs.assign(this->nodeCount_, -1.0F);
+    for (Index node = 0; node < this->nodeCount_; ++node)
+    {
+      if ((node & 1023) == 0 &&
+        !this->monitor_.update(kEvaluationShare * node / this->nodeCount_))
+      {
+        return false;
+      }
+      double cost = 0.0;
+      if (!this->kept_[node] && this->criterion_.evaluate(node, cost))
+      {
+        costs[node] = static_cast<float>(cost);
+      }
+    }
+    return true;
+  }
+
+  bool atGoal(StopReason& reason) const
+  {
+    if (this->nodesLeft_ <= this->goal_.nodes)
+    {
+      reason = StopReason::TargetNodes;
+      return true;
+    }
+    if (this->trianglesLeft_ <= this->goal_.triangles)
+    {
+      reason = this->goal_.triangleReason;
+      return true;
+    }
+    return false;
+  }
+
+  bool reportProgress(Index planned)
+  {
+    const double gone = this->topology_.triangleCount() - this->trianglesLeft_;
+    return this->monitor_.update(
+      std::min(0.99, kEvaluationShare + (1.0 - kEvaluationShare) * gone / planned));
+  }
+
+  void remove(RecordBuilder& builder, double cost)
+  {
+    const Hole& hole = this->hole_;
+    const HoleTriangulation& filling = this->filling_;
+    for (int i = 0; i < hole.triangleCount; ++i)
+    {
+      this->order_[i] = static_cast<unsigned char>(i);
+      this->slots_[i] = triangleOf(hole.corners[i]);
+      const auto& nodes = this->topology_.triangle(this->slots_[i]).nodes;
+      std::copy(nodes.begin(), nodes.end(), this->oldCells_.begin() + 3 * i);
+    }
+    for (int i = 0; i < filling.count; ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        this->newCells_[3 * i + c] = hole.ring[filling.triangles[i][c]];
+      }
+    }
+    if (this->options_.trackCellSources)
+    {
+      findCellSources(this->points_, hole, filling, this->sources_.data());
+    }
+    RecordBuilder::Step step;
+    step.node = hole.node;
+    step.oldCount = hole.triangleCount;
+    step.newCount = filling.count;
+    step.slots = this->slots_.data();
+    step.oldCells = this->oldCells_.data();
+    step.newCells = this->newCells_.data();
+    step.sources = this->sources_.data();
+    step.error =
+      this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * cost : cost;
+    builder.append(step);
+    this->topology_.replace(hole, filling, this->order_.data());
+    this->criterion_.removed(hole, filling, this->order_.data());
+    this->trianglesLeft_ -= hole.triangleCount - filling.count;
+    --this->nodesLeft_;
+  }
+
+  void reevaluate(HashQueue& queue, const Intervals& intervals, Index interval)
+  {
+    for (int i = 0; i < this->hole_.size; ++i)
+    {
+      const Index node = this->hole_.ring[i];
+      if (this->kept_[node])
+      {
+        continue;
+      }
+      if (CriterionType::kLazy)
+      {
+        // Evaluated when its turn comes; one that waits outside gets a new chance.
+        queue.insert(node, queue.contains(node) ? queue.interval(node) : interval);
+        continue;
+      }
+      double cost = 0.0;
+      if (this->criterion_.evaluate(node, cost))
+      {
+        queue.insert(node, intervals.of(cost));
+      }
+    }
+  }
+
+  TriangleTopology& topology_;
+  const MeshPoints& points_;
+  CriterionType& criterion_;
+  const std::vector<unsigned char>& kept_;
+  const HashQueueDecimationOptions& options_;
+  const Goal& goal_;
+  Monitor& monitor_;
+  Index nodeCount_;
+  Index trianglesLeft_;
+  Index nodesLeft_;
+  Hole hole_;
+  HoleTriangulation filling_;
+  std::array<unsigned char, kMaximumPatchCells> order_;
+  std::array<unsigned char, kMaximumPatchCells> sources_;
+  std::array<Index, kMaximumPatchCells> slots_;
+  std::array<Index, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
+  std::array<Index, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
+};
+
+Outcome checkArrays(const HashQueueDecimationOptions& options)
+{
+  for (const NodalArrayView& array : options.arrays)
+  {
+    if (!array.values || array.components < 1 || array.components > kMaximumComponents)
+    {
+      return { Status::InvalidArgument,
+        "Nodal array '" + array.name + "' has " + std::to_string(array.components) +
+          " components; 1 to " + std::to_string(kMaximumComponents) + " can steer." };
+    }
+  }
+  if (options.criterion == Criterion::ScalarDifference && options.arrays.empty())
+  {
+    return { Status::InvalidArgument, "The criterion Scalar Difference needs a nodal array." };
+  }
+  return {};
+}
+
+Outcome checkOptions(const HashQueueDecimationOptions& options)
+{
+  const auto invalid = [](const char* name, double value, const char* range) -> Outcome {
+    return { Status::InvalidArgument,
+      std::string(name) + " is " + std::to_string(value) + "; it must be " + range + "." };
+  };
+  if (!(options.targetReduction >= 0.0 && options.targetReduction <= 1.0))
+  {
+    return invalid("TargetReduction", options.targetReduction, "from 0 to 1");
+  }
+  if (!(options.maximumError >= 0.0))
+  {
+    return invalid("MaximumError", options.maximumError, "0 or more");
+  }
+  if (!(options.intervalNodes > 0.0))
+  {
+    return invalid("IntervalNodes", options.intervalNodes, "more than 0");
+  }
+  if (!(options.scalarWeight >= 0.0) || !std::isfinite(options.scalarWeight))
+  {
+    return invalid("ScalarWeight", options.scalarWeight, "0 or more, and finite");
+  }
+  if (options.targetNodes < 0)
+  {
+    return invalid("TargetNodes", static_cast<double>(options.targetNodes), "0 or more");
+  }
+  if (options.targetTriangles < 0)
+  {
+    return invalid("TargetTriangles", static_cast<double>(options.targetTriangles), "0 or more");
+  }
+  return checkArrays(options);
+}
+
+Outcome checkMesh(const TriangleMeshView& mesh)
+{
+  constexpr std::int64_t kLimit = std::numeric_limits<Index>::max();
+  if (mesh.nodeCount > kLimit || mesh.triangleCount > kLimit / 4)
+  {
+    return { Status::TooLarge,
+      "The mesh has " + std::to_string(mesh.nodeCount) + " nodes and " +
+        std::to_string(mesh.triangleCount) + " triangles; at most " + std::to_string(kLimit) +
+        " and " + std::to_string(kLimit / 4) + " fit into one piece. Split it into blocks." };
+  }
+  for (std::int64_t i = 0; i < 3 * mesh.triangleCount; ++i)
+  {
+    if (mesh.triangles[i] < 0 || mesh.triangles[i] >= mesh.nodeCount)
+    {
+      return { Status::InvalidArgument,
+        "Triangle " + std::to_string(i / 3) + " refers to node " +
+          std::to_string(mesh.triangles[i]) + ", but there are " +
+          std::to_string(mesh.nodeCount) + " nodes." };
+    }
+  }
+  return {};
+}
+
+/// Flag the nodes that are never candidates, and count them by reason.
+std::vector<unsigned char> findKeptNodes(const TriangleMeshView& mesh, const MeshPoints& points,
+  const TriangleTopology& topology, bool preserveBoundary, HashQueueDecimationResult& result)
+{
+  std::vector<unsigned char> kept(mesh.nodeCount, 0);
+  for (Index node = 0; node < mesh.nodeCount; ++node)
+  {
+    Index* counter = nullptr;
+    if (mesh.keep && mesh.keep[node])
+    {
+      counter = &result.requestedNodes;
+    }
+    else if (!points.finite(node))
+    {
+      counter = &result.nonFiniteNodes;
+    }
+    else if (topology.kind(node) == NodeKind::Unused)
+    {
+      counter = &result.unusedNodes;
+    }
+    else if (topology.kind(node) == NodeKind::Degenerate)
+    {
+      counter = &result.degenerateNodes;
+    }
+    else if (topology.kind(node) == NodeKind::NonManifold)
+    {
+      counter = &result.nonManifoldNodes;
+    }
+    else if (preserveBoundary && topology.kind(node) == NodeKind::Boundary)
+    {
+      counter = &result.boundaryNodes;
+    }
+    if (counter)
+    {
+      ++*counter;
+      kept[node] = 1;
+    }
+  }
+  return kept;
+}
+
+Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
+  Monitor& monitor, HashQueueDecimationResult& result)
+{
+  const MeshPoints points(mesh);
+  TriangleTopology topology(
+    mesh.triangles, static_cast<Index>(mesh.triangleCount), static_cast<Index>(mesh.nodeCount));
+  std::vector<unsigned char> kept =
+    findKeptNodes(mesh, points, topology, options.preserveBoundary, result);
+  const Goal goal(mesh, options);
+  Status status = Status::Ok;
+  if (options.criterion == Criterion::Deviation)
+  {
+    DeviationCriterion criterion(
+      topology, points, options.arrays, options.scalarWeight, kept);
+    status =
+      Decimation<DeviationCriterion>(topology, points, criterion, kept, options, goal, monitor)
+        .run(result);
+  }
+  else
+  {
+    MeanEdgeCriterion criterion(topology, points,
+      options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr, kept);
+    status =
+      Decimation<MeanEdgeCriterion>(topology, points, criterion, kept, options, goal, monitor)
+        .run(result);
+  }
+  return { status, status == Status::Cancelled ? "Cancelled." : "" };
+}
+
+} // namespace
+
+const char* toString(StopReason reason)
+{
+  switch (reason)
+  {
+    case StopReason::TargetReduction:
+      return "target reduction";
+    case StopReason::TargetNodes:
+      return "target number of nodes";
+    case StopReason::TargetTriangles:
+      return "target number of triangles";
+    case StopReason::MaximumError:
+      return "maximum error";
+    case StopReason::NoRemovableNode:
+      break;
+  }
+  return "no removable node left";
+}
+
+Outcome decimate(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
+  Monitor& monitor, HashQueueDecimationResult& result)
+{
+  result = HashQueueDecimationResult();
+  Outcome outcome = checkOptions(options);
+  if (outcome)
+  {
+    outcome = checkMesh(mesh);
+  }
+  if (!outcome)
+  {
+    return outcome;
+  }
+  try
+  {
+    outcome = run(mesh, options, monitor, result);
+  }
+  catch (const std::bad_alloc&)
+  {
+    outcome = { Status::OutOfMemory,
+      "Not enough memory to decimate " + std::to_string(mesh.nodeCount) + " nodes." };
+  }
+  if (!outcome)
+  {
+    result = HashQueueDecimationResult();
+  }
+  return outcome;
+}
+
+} // namespace undecimate

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "mean_edge_criterion.h"
+
+#include "array_range.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace undecimate
+{
+
+MeanEdgeCriterion::MeanEdgeCriterion(const TriangleTopology& topology, const MeshPoints& points,
+  const NodalArrayView* array, std::vector<unsigned char>& kept)
+  : topology_(topology)
+  , points_(points)
+  , array_(array)
+  , kept_(kept)
+  , nodes_(kept.size())
+{
+  const Index nodeCount = static_cast<Index>(kept.size());
+  if (array)
+  {
+    keepNonFinite(*array, kept);
+    const ArrayRange range = arrayRange(*array, nodeCount);
+    this->scale_ = range.size > 0.0 ? 1.0 / range.size : 0.0;
+    if (array->components == 1)
+    {
+      for (Index i = 0; i < nodeCount; ++i)
+      {
+        const double value = (array->values[i] - range.lowest[0]) * this->scale_;
+        this->nodes_[i].value =
+          std::isfinite(value) ? static_cast<std::int32_t>(std::lround(value * kUnit)) : -1;
+      }
+    }
+  }
+  for (Index t = 0; t < topology.triangleCount(); ++t)
+  {
+    const TriangleTopology::Triangle& triangle = topology.triangle(t);
+    for (int c = 0; c < 3; ++c)
+    {
+      // Each edge once: from its boundary side, or from the smaller of its two corners.
+      const Corner across = triangle.across[c];
+      if (across == kNoCorner || makeCorner(t, c) < across)
+      {
+        this->addEdge(triangle.nodes[nextCorner(c)], triangle.nodes[previousCorner(c)], 1);
+      }
+    }
+  }
+}
+
+std::int64_t MeanEdgeCriterion::quantity(Index a, Index b) const
+{
+  constexpr auto kWhole = static_cast<std::int64_t>(kUnit);
+  if (!this->array_)
+  {
+    const Vector edge = this->points_[b] - this->points_[a];
+    const double flat = std::sqrt(edge.x * edge.x + edge.y * edge.y);
+    const double angle = std::atan2(std::abs(edge.z), flat);
+    return std::isfinite(angle) ? std::llround(angle * (kUnit / std::acos(0.0))) : kWhole;
+  }
+  const int components = this->array_->components;
+  if (components == 1)
+  {
+    const std::int32_t valueA = this->nodes_[a].value;
+    const std::int32_t valueB = this->nodes_[b].value;
+    return valueA < 0 || valueB < 0 ? kWhole : std::abs(valueA - valueB);
+  }
+  const float* valuesA = this->array_->values + std::size_t{ 1 } * components * a;
+  const float* valuesB = this->array_->values + std::size_t{ 1 } * components * b;
+  double square = 0.0;
+  for (int i = 0; i < components; ++i)
+  {
+    const double difference = static_cast<double>(valuesA[i]) - valuesB[i];
+    square += difference * difference;
+  }
+  const double fraction = std::sqrt(square) * this->scale_;
+  return fraction <= 1.0 ? std::llround(fraction * kUnit) : kWhole;
+}
+
+void MeanEdgeCriterion::addEdge(Index a, Index b, int sign)
+{
+  const std::int64_t quantity = sign * this->quantity(a, b);
+  for (const Index node : { a, b })
+  {
+    this->nodes_[node].sum += quantity;
+    this->nodes_[node].edges += sign;
+  }
+}
+
+bool MeanEdgeCriterion::retriangulate(
+  Index node, Hole& hole, HoleTriangulation& filling, double& cost)
+{
+  this->evaluate(node, cost);
+  filling.count = 0;
+  if (!this->topology_.gather(node, hole) || !this->topology_.isClosable(hole))
+  {
+    return false;
+  }
+  if (hole.size == 2)
+  {
+    return true;
+  }
+  std::array<Vector, kMaximumPatchCells + 1> ring;
+  const Vector center = this->points_[node];
+  for (int i = 0; i < hole.size; ++i)
+  {
+    ring[i] = this->points_[hole.ring[i]] - center;
+  }
+  std::array<Vector, kMaximumPatchCells> normals;
+  Vector normal;
+  for (int i = 0; i < hole.triangleCount; ++i)
+  {
+    normals[i] = cross(ring[i], ring[i + 1 == hole.size ? 0 : i + 1]);
+    normal = normal + normals[i];
+  }
+  // In the plane of the mean normal no old triangle may lie upside down, else the hole is not the
+  // polygon that the plane shows.
+  for (int i = 0; i < hole.triangleCount; ++i)
+  {
+    if (!(dot(normals[i], normal) > 0.0))
+    {
+      return false;
+    }
+  }
+  EarCutting ears(ring.data(), hole.size, normal);
+  const int last = hole.size - 1;
+  const bool done = ears.cut(
+    [&](int i, int j) {
+      const bool closing = hole.boundary && (i + j == last && (i == 0 || j == 0));
+      return closing || !this->topology_.mayHaveEdge(hole.ring[i], hole.ring[j]);
+    },
+    filling);
+  return done;
+}
+
+void MeanEdgeCriterion::removed(
+  const Hole& hole, const HoleTriangulation& filling, const unsigned char* /*order*/)
+{
+  for (int i = 0; i < hole.size; ++i)
+  {
+    this->addEdge(hole.node, hole.ring[i], -1);
+  }
+  const int last = hole.size - 1;
+  for (int t = 0; t < filling.count; ++t)
+  {
+    const auto& triangle = filling.triangles[t];
+    for (int c = 0; c < 3; ++c)
+    {
+      const int from = triangle[c];
+      const int to = triangle[nextCorner(c)];
+      // Ring edges were there; a diagonal is met from both sides, the new boundary edge from one.
+      const bool ringEdge = to == from + 1 || (from == last && to == 0 && !hole.boundary);
+      const bool closing = from == last && to == 0;
+      if (!ringEdge && (from < to || closing))
+      {
+        this->addEdge(hole.ring[from], hole.ring[to], 1);
+      }
+    }
+  }
+}
+
+} // namespace undecimate

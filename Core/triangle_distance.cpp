@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "triangle_distance.h"
+
+#include <cmath>
+
+// One binary runs everywhere and uses wider vectors where there are some. Fused multiply-add stays
+// off, so that results do not depend on the machine.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__)
+#define UNDECIMATE_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define UNDECIMATE_VECTOR_CLONES
+#endif
+
+namespace undecimate
+{
+
+bool DistanceTriangle::set(const Vector& a, const Vector& b, const Vector& c)
+{
+  const Vector corners[3] = { a, b, c };
+  Vector n = cross(b - a, c - a);
+  const double area = std::sqrt(dot(n, n));
+  if (!(area > 0.0))
+  {
+    return false;
+  }
+  n = (1.0 / area) * n;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vector& from = corners[k];
+    Vector along = corners[nextCorner(k)] - from;
+    const double length = std::sqrt(dot(along, along));
+    along = (1.0 / length) * along;
+    const Vector inwards = cross(n, along);
+    Edge& edge = this->edges[k];
+    edge.along[0] = static_cast<float>(along.x);
+    edge.along[1] = static_cast<float>(along.y);
+    edge.along[2] = static_cast<float>(along.z);
+    edge.start = static_cast<float>(dot(along, from));
+    edge.inwards[0] = static_cast<float>(inwards.x);
+    edge.inwards[1] = static_cast<float>(inwards.y);
+    edge.inwards[2] = static_cast<float>(inwards.z);
+    edge.side = static_cast<float>(dot(inwards, from));
+    edge.length = static_cast<float>(length);
+    edge.inverseHeight = static_cast<float>(length / area);
+  }
+  this->normal[0] = static_cast<float>(n.x);
+  this->normal[1] = static_cast<float>(n.y);
+  this->normal[2] = static_cast<float>(n.z);
+  this->height = static_cast<float>(dot(n, a));
+  return true;
+}
+
+namespace
+{
+
+inline float larger(float a, float b)
+{
+  return a > b ? a : b;
+}
+inline float smaller(float a, float b)
+{
+  return a < b ? a : b;
+}
+
+inline float inProduct(const float* v, float x, float y, float z)
+{
+  return v[0] * x + v[1] * y + v[2] * z;
+}
+
+// Squared distance within the plane to an edge, and the side of it.
+inline float edgeSquare(
+  const DistanceTriangle::Edge& edge, float x, float y, float z, float& side)
+{
+  side = inProduct(edge.inwards, x, y, z) - edge.side;
+  const float along = inProduct(edge.along, x, y, z) - edge.start;
+  const float excess = larger(larger(-along, along - edge.length), 0.0F);
+  return side * side + excess * excess;
+}
+
+inline float squaredDistance(const DistanceTriangle& t, float x, float y, float z)
+{
+  float side0;
+  float side1;
+  float side2;
+  const float square0 = edgeSquare(t.edges[0], x, y, z, side0);
+  const float square1 = edgeSquare(t.edges[1], x, y, z, side1);
+  const float square2 = edgeSquare(t.edges[2], x, y, z, side2);
+  const float inside = smaller(smaller(side0, side1), side2);
+  const float nearest = smaller(smaller(square0, square1), square2);
+  const float height = inProduct(t.normal, x, y, z) - t.height;
+  return height * height + (inside >= 0.0F ? 0.0F : nearest);
+}
+
+UNDECIMATE_VECTOR_CLONES
+void fillSquares(const DistanceTriangle& triangle, const float* __restrict__ x,
+  const float* __restrict__ y, const float* __restrict__ z, int size, float* __restrict__ squares)
+{
+  const DistanceTriangle t = triangle;
+  for (int i = 0; i < size; ++i)
+  {
+    squares[i] = squaredDistance(t, x[i], y[i], z[i]);
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void lowerSquares(const DistanceTriangle& triangle, const float* __restrict__ x,
+  const float* __restrict__ y, const float* __restrict__ z, int size, float* __restrict__ squares)
+{
+  const DistanceTriangle t = triangle;
+  for (int i = 0; i < size; ++i)
+  {
+    squares[i] = smaller(squares[i], squaredDistance(t, x[i], y[i], z[i]));
+  }
+}
+
+inline float fractionAlong(const DistanceTriangle::Edge& edge, float x, float y, float z)
+{
+  const float along = (inProduct(edge.along, x, y, z) - edge.start) / edge.length;
+  return smaller(larger(along, 0.0F), 1.0F);
+}
+
+UNDECIMATE_VECTOR_CLONES
+void fillClosest(const DistanceTriangle& triangle, const float* __restrict__ x,
+  const float* __restrict__ y, const float* __restrict__ z, int size, float* __restrict__ squares,
+  float* __restrict__ weightB, float* __restrict__ weightC)
+{
+  const DistanceTriangle t = triangle;
+  for (int i = 0; i < size; ++i)
+  {
+    float side0;
+    float side1;
+    float side2;
+    const float square0 = edgeSquare(t.edges[0], x[i], y[i], z[i], side0);
+    const float square1 = edgeSquare(t.edges[1], x[i], y[i], z[i], side1);
+    const float square2 = edgeSquare(t.edges[2], x[i], y[i], z[i], side2);
+    const bool inside = smaller(smaller(side0, side1), side2) >= 0.0F;
+    const float nearest = smaller(smaller(square0, square1), square2);
+    const float height = inProduct(t.normal, x[i], y[i], z[i]) - t.height;
+    squares[i] = height * height + (inside ? 0.0F : nearest);
+    // Edge 0 runs from a to b, edge 1 from b to c, edge 2 from c to a.
+    const float on0 = fractionAlong(t.edges[0], x[i], y[i], z[i]);
+    const float on1 = fractionAlong(t.edges[1], x[i], y[i], z[i]);
+    const float on2 = fractionAlong(t.edges[2], x[i], y[i], z[i]);
+    const bool first = square0 <= nearest;
+    const bool second = square1 <= nearest;
+    const float outsideB = first ? on0 : (second ? 1.0F - on1 : 0.0F);
+    const float outsideC = first ? 0.0F : (second ? on1 : 1.0F - on2);
+    weightB[i] = inside ? side2 * t.edges[2].inverseHeight : outsideB;
+    weightC[i] = inside ? side0 * t.edges[0].inverseHeight : outsideC;
+  }
+}
+
+} // namespace
+
+void DistanceTriangle::squaredDistances(const PointRows& points, float* squares) const
+{
+  fillSquares(*this, points.x, points.y, points.z, points.size, squares);
+}
+
+void DistanceTriangle::lowerSquaredDistances(const PointRows& points, float* squares) const
+{
+  lowerSquares(*this, points.x, points.y, points.z, points.size, squares);
+}
+
+void DistanceTriangle::closestPoints(
+  const PointRows& points, float* squares, float* weightB, float* weightC) const
+{
+  fillClosest(*this, points.x, points.y, points.z, points.size, squares, weightB, weightC);
+}
+
+} // namespace undecimate

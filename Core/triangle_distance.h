@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file triangle_distance.h
+/// @brief Squared distances of many points to one triangle, without branches.
+///
+/// In the frame of each edge (along it, and inwards in the triangle's plane) the distance to the edge
+/// is the inward offset and the excess beyond its ends; inside all three edges only the height over
+/// the plane is left. Written so that compilers turn the loops into vector instructions.
+
+#ifndef UNDECIMATE_CORE_TRIANGLE_DISTANCE_H
+#define UNDECIMATE_CORE_TRIANGLE_DISTANCE_H
+
+#include "ear_cutting.h"
+
+#include <vector>
+
+namespace undecimate
+{
+
+/// Points as three arrays of equal length, padded to whole vectors (see paddedSize()).
+struct PointRows
+{
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  int size = 0; ///< padded
+};
+
+/// Rows are handled in blocks of so many floats.
+constexpr int kRowBlock = 8;
+
+inline int paddedSize(int size)
+{
+  return (size + kRowBlock - 1) / kRowBlock * kRowBlock;
+}
+
+/// A triangle prepared for distances.
+class DistanceTriangle
+{
+public:
+  DistanceTriangle() = default;
+
+  /// @return false if the triangle has no area (the object is then not to be used)
+  bool set(const Vector& a, const Vector& b, const Vector& c);
+
+  /// squares[i] = squared distance of point i.
+  void squaredDistances(const PointRows& points, float* squares) const;
+
+  /// squares[i] = min(squares[i], squared distance of point i).
+  void lowerSquaredDistances(const PointRows& points, float* squares) const;
+
+  /// As squaredDistances(), and the weights of corners b and c at the closest point.
+  void closestPoints(const PointRows& points, float* squares, float* weightB, float* weightC) const;
+
+  struct Edge
+  {
+    float along[3];  // unit vector
+    float start;     // of the edge's first corner, along the edge
+    float inwards[3]; // unit vector in the plane
+    float side;      // of the edge, inwards
+    float length;
+    float inverseHeight; // of the opposite corner over the edge
+  };
+  Edge edges[3];
+  float normal[3];
+  float height;
+};
+
+} // namespace undecimate
+
+#endif
