@@ -1,0 +1,28 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+option(UNDECIMATE_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
+option(UNDECIMATE_WERROR "Make compiler warnings errors" OFF)
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+if (UNDECIMATE_SANITIZE)
+  # For all targets: every library of a process has to agree.
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=address,undefined)
+endif ()
+
+# undecimate_compile_options(<target>): warnings, and floating-point results that do not depend on
+# the compiler's choice of fused multiply-adds.
+function (undecimate_compile_options target)
+  if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    target_compile_options(${target} PRIVATE
+      -Wall -Wextra -Wpedantic
+      -ffp-contract=off -fno-math-errno -fno-trapping-math
+      $<$<BOOL:${UNDECIMATE_WERROR}>:-Werror>)
+  endif ()
+endfunction ()
