@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file undecimateArrays.h
+/// @brief VTK arrays and cell arrays in bulk: reordering, joining, fingerprints.
+///
+/// All loops run on raw pointers in our own, optimised code. Arrays whose values do not lie in one
+/// block as VTK's plain arrays do (structure of arrays, variants, ...) go through InsertTuples().
+
+#ifndef undecimateArrays_h
+#define undecimateArrays_h
+
+#include "types.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class vtkCellArray;
+class vtkDataSetAttributes;
+class vtkFieldData;
+
+namespace undecimate
+{
+namespace filters
+{
+
+using ArrayPointer = vtkSmartPointer<vtkAbstractArray>;
+
+/// An array that is described as `like` (type, name, component names, information and look-up
+/// table), with `tuples` tuples whose values are not set.
+ArrayPointer newLike(vtkAbstractArray* like, vtkIdType tuples);
+
+/// The values of an array (in the same memory where VTK can), described by `like`.
+ArrayPointer share(vtkAbstractArray* values, vtkAbstractArray* like);
+
+/// The first `leading` tuples of `from`, then tuple leading + numbers[i] for each i < count;
+/// described by `like`.
+ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType leading,
+  const Index* numbers, vtkIdType count);
+
+/// The first `baseCount` tuples of `base`, then the first `restCount` tuples of `rest`.
+/// `rest` may be null if restCount is 0. Described by `base`.
+ArrayPointer join(
+  vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest, vtkIdType restCount);
+
+/// The tuples of join(base, baseCount, rest, restCount), tuple i at place order[i].
+ArrayPointer scatter(vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest,
+  vtkIdType restCount, const Index* order);
+
+/// Add arrays[i] to `to` in place of array i of `from` (null entries are left out) and make the
+/// same ones active. `to` must be empty.
+void setArrays(
+  vtkDataSetAttributes* to, vtkDataSetAttributes* from, const std::vector<ArrayPointer>& arrays);
+
+/// Hash of type, components and values; not of the name. Types of the same size and kind are one
+/// type, since files do not tell them apart (long and long long).
+std::uint64_t fingerprint(vtkAbstractArray* array);
+
+/// "double", "vtkStringArray", ...: for messages.
+std::string typeName(vtkAbstractArray* array);
+
+/// The names of all arrays, quoted and separated by commas, or "none".
+std::string listNames(vtkFieldData* arrays);
+
+/// Numbers of cells, corners first to last, in core's width.
+struct TriangleCells
+{
+  std::vector<Index> corners; ///< 3 a triangle
+  vtkIdType otherCells = 0;   ///< cells that are not triangles; if any, corners is not complete
+  vtkIdType badCell = -1;     ///< first cell with a point that does not exist, and that point
+  vtkIdType badPoint = -1;
+};
+
+/// Read triangles, checking that each point number is in [0, pointCount). Complexity: O(cells).
+TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount);
+
+/// A cell array of triangles.
+/// @param corners 3 * count point numbers
+/// @param wide 64-bit storage, else 32-bit
+vtkSmartPointer<vtkCellArray> makeTriangles(const Index* corners, vtkIdType count, bool wide);
+
+/// The same cells with each point number p replaced by map[p]; storage width as asked.
+vtkSmartPointer<vtkCellArray> mapPoints(vtkCellArray* cells, const Index* map, bool wide);
+
+/// Set flags[p] for each point p of the cells. False if a cell has a point outside [0, pointCount).
+bool flagPoints(vtkCellArray* cells, std::vector<unsigned char>& flags);
+
+/// Hash of the cells: sizes and point numbers, whatever the storage width.
+std::uint64_t fingerprint(vtkCellArray* cells);
+
+} // namespace filters
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,327 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "undecimateInput.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTriangleFilter.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace undecimate
+{
+namespace filters
+{
+
+namespace
+{
+
+constexpr int kMaximumComponents = 9;
+
+std::string counted(vtkIdType number, const std::string& word)
+{
+  return std::to_string(number) + " " + word + (number == 1 ? "" : "s");
+}
+
+template <class From, class To>
+void convert(const void* from, std::vector<To>& to)
+{
+  const From* values = static_cast<const From*>(from);
+  std::transform(
+    values, values + to.size(), to.begin(), [](From value) { return static_cast<To>(value); });
+}
+
+// All values of an array of any numeric type.
+template <class To>
+void readValues(vtkDataArray* array, std::vector<To>& to)
+{
+  to.resize(array->GetNumberOfValues());
+  if (!array->HasStandardMemoryLayout() || array->GetDataType() == VTK_BIT)
+  {
+    const int components = array->GetNumberOfComponents();
+    for (vtkIdType tuple = 0; tuple < array->GetNumberOfTuples(); ++tuple)
+    {
+      for (int c = 0; c < components; ++c)
+      {
+        to[tuple * components + c] = static_cast<To>(array->GetComponent(tuple, c));
+      }
+    }
+    return;
+  }
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro(convert<VTK_TT>(array->GetVoidPointer(0), to));
+    default:
+      break;
+  }
+}
+
+void passCancel(vtkObject* caller, unsigned long, void* clientData, void*)
+{
+  const auto* cancelled = static_cast<const std::function<bool()>*>(clientData);
+  if ((*cancelled)())
+  {
+    vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+  }
+}
+
+// Triangles of the polygons and strips, and from which of them (polygons first) each one is.
+vtkSmartPointer<vtkCellArray> cutFaces(
+  vtkPolyData* mesh, const std::function<bool()>& cancelled, std::vector<Index>& sources)
+{
+  const vtkIdType faceCount = mesh->GetNumberOfPolys() + mesh->GetNumberOfStrips();
+  vtkNew<vtkIdTypeArray> numbers;
+  numbers->SetName("source");
+  numbers->SetNumberOfValues(faceCount);
+  std::iota(numbers->GetPointer(0), numbers->GetPointer(0) + faceCount, vtkIdType{ 0 });
+  vtkNew<vtkPolyData> faces;
+  faces->SetPoints(mesh->GetPoints());
+  faces->SetPolys(mesh->GetPolys());
+  faces->SetStrips(mesh->GetStrips());
+  faces->GetCellData()->AddArray(numbers);
+
+  vtkNew<vtkCallbackCommand> command;
+  command->SetCallback(passCancel);
+  command->SetClientData(const_cast<std::function<bool()>*>(&cancelled));
+  vtkNew<vtkTriangleFilter> filter;
+  filter->AddObserver(vtkCommand::ProgressEvent, command);
+  filter->SetInputData(faces);
+  filter->Update();
+  if (filter->GetAbortExecute() || cancelled())
+  {
+    return nullptr;
+  }
+  vtkIdTypeArray* result =
+    vtkIdTypeArray::SafeDownCast(filter->GetOutput()->GetCellData()->GetAbstractArray("source"));
+  if (result)
+  {
+    sources.assign(result->GetPointer(0), result->GetPointer(0) + result->GetNumberOfValues());
+  }
+  return filter->GetOutput()->GetPolys();
+}
+
+} // namespace
+
+std::string OtherFaces::describe() const
+{
+  std::vector<std::string> parts;
+  const auto add = [&parts](vtkIdType number, const char* word)
+  {
+    if (number > 0)
+    {
+      parts.push_back(counted(number, word));
+    }
+  };
+  add(this->quads, "quad");
+  add(this->polygons, "polygon");
+  add(this->strips, "triangle strip");
+  add(this->slivers, "face of fewer than three point");
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+  }
+  return text;
+}
+
+OtherFaces countOtherFaces(vtkPolyData* mesh)
+{
+  OtherFaces faces;
+  faces.strips = mesh->GetNumberOfStrips();
+  vtkCellArray* polys = mesh->GetPolys();
+  const vtkIdType count = polys->GetNumberOfCells();
+  const auto sort = [&faces, count](const auto* offsets)
+  {
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const auto size = offsets[i + 1] - offsets[i];
+      faces.quads += size == 4;
+      faces.polygons += size > 4;
+      faces.slivers += size < 3;
+    }
+  };
+  if (count > 0 && polys->IsStorage64Bit())
+  {
+    sort(polys->GetOffsetsArray64()->GetPointer(0));
+  }
+  else if (count > 0)
+  {
+    sort(polys->GetOffsetsArray32()->GetPointer(0));
+  }
+  return faces;
+}
+
+vtkSmartPointer<vtkPolyData> triangulated(
+  vtkPolyData* mesh, const std::function<bool()>& cancelled, vtkIdType& dropped)
+{
+  std::vector<Index> sources;
+  vtkSmartPointer<vtkCellArray> triangles = cutFaces(mesh, cancelled, sources);
+  if (!triangles)
+  {
+    return nullptr;
+  }
+  auto result = vtkSmartPointer<vtkPolyData>::New();
+  result->SetPoints(mesh->GetPoints());
+  result->SetVerts(mesh->GetVerts());
+  result->SetLines(mesh->GetLines());
+  result->SetPolys(triangles);
+  result->GetPointData()->ShallowCopy(mesh->GetPointData());
+  result->GetFieldData()->ShallowCopy(mesh->GetFieldData());
+
+  const vtkIdType leading = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
+  std::vector<ArrayPointer> data;
+  for (int i = 0; i < mesh->GetCellData()->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = mesh->GetCellData()->GetAbstractArray(i);
+    data.push_back(
+      gather(array, array, leading, sources.data(), static_cast<vtkIdType>(sources.size())));
+  }
+  setArrays(result->GetCellData(), mesh->GetCellData(), data);
+
+  std::vector<bool> found(mesh->GetNumberOfPolys() + mesh->GetNumberOfStrips(), false);
+  for (const Index source : sources)
+  {
+    found[source] = true;
+  }
+  dropped = std::count(found.begin(), found.end(), false);
+  return result;
+}
+
+std::string MeshInput::read(vtkPolyData* mesh)
+{
+  const vtkIdType points = mesh->GetNumberOfPoints();
+  const vtkIdType faces = mesh->GetNumberOfPolys();
+  constexpr vtkIdType most = std::numeric_limits<Index>::max();
+  if (points > most || faces > most / 3)
+  {
+    return "The input has " + counted(points, "point") + " and " + counted(faces, "triangle") +
+      "; at most " + std::to_string(most) +
+      " points and corners fit in one piece. Divide the mesh.";
+  }
+  this->readPoints(mesh);
+  TriangleCells cells = readTriangles(mesh->GetPolys(), points);
+  if (cells.badCell >= 0)
+  {
+    return "Face " + std::to_string(cells.badCell) + " of the input refers to point " +
+      std::to_string(cells.badPoint) + ", but there are " + counted(points, "point") +
+      ". Repair the cells of the input.";
+  }
+  this->triangles_ = std::move(cells.corners);
+  this->view_.nodeCount = points;
+  this->view_.triangles = this->triangles_.data();
+  this->view_.triangleCount = faces;
+  return this->readKept(mesh);
+}
+
+void MeshInput::readPoints(vtkPolyData* mesh)
+{
+  if (!mesh->GetPoints())
+  {
+    return;
+  }
+  vtkDataArray* points = mesh->GetPoints()->GetData();
+  const bool plain = points->HasStandardMemoryLayout();
+  if (plain && points->GetDataType() == VTK_FLOAT)
+  {
+    this->view_.pointsFloat = static_cast<const float*>(points->GetVoidPointer(0));
+  }
+  else if (plain && points->GetDataType() == VTK_DOUBLE)
+  {
+    this->view_.pointsDouble = static_cast<const double*>(points->GetVoidPointer(0));
+  }
+  else
+  {
+    readValues(points, this->coordinates_);
+    this->view_.pointsDouble = this->coordinates_.data();
+  }
+}
+
+// Nodes that must stay: those of vertex cells and lines, which no level changes, and ghosts, which
+// are another piece's.
+std::string MeshInput::readKept(vtkPolyData* mesh)
+{
+  vtkUnsignedCharArray* pointGhosts = mesh->GetPointGhostArray();
+  vtkUnsignedCharArray* cellGhosts = mesh->GetCellGhostArray();
+  const vtkIdType before = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
+  if (before == 0 && !pointGhosts && !cellGhosts)
+  {
+    return {};
+  }
+  this->keep_.assign(mesh->GetNumberOfPoints(), 0);
+  if (pointGhosts)
+  {
+    const unsigned char* flags = pointGhosts->GetPointer(0);
+    std::copy(flags, flags + this->keep_.size(), this->keep_.begin());
+  }
+  for (vtkCellArray* cells : { mesh->GetVerts(), mesh->GetLines() })
+  {
+    if (!flagPoints(cells, this->keep_))
+    {
+      return "A vertex cell or a line of the input refers to a point outside the " +
+        counted(mesh->GetNumberOfPoints(), "point") + ". Repair the cells of the input.";
+    }
+  }
+  if (cellGhosts)
+  {
+    const unsigned char* ghosts = cellGhosts->GetPointer(0) + before;
+    for (std::int64_t i = 0; i < 3 * this->view_.triangleCount; ++i)
+    {
+      this->keep_[this->triangles_[i]] |= ghosts[i / 3];
+    }
+  }
+  this->view_.keep = this->keep_.data();
+  return {};
+}
+
+std::string MeshInput::addArray(vtkPolyData* mesh, const std::string& name)
+{
+  vtkPointData* data = mesh->GetPointData();
+  vtkAbstractArray* found =
+    name.empty() ? data->GetScalars() : data->GetAbstractArray(name.c_str());
+  vtkDataArray* array = vtkDataArray::SafeDownCast(found);
+  if (!found)
+  {
+    return (name.empty() ? "No Scalars are named, and the input has no active point scalars"
+                         : "The input has no point array '" + name + "' to use as Scalars") +
+      ". Its point arrays are: " + listNames(data) + ".";
+  }
+  const int components = found->GetNumberOfComponents();
+  if (!array || components < 1 || components > kMaximumComponents)
+  {
+    return "Point array '" + name + "' (" + typeName(found) + ", " +
+      counted(components, "component") +
+      ") cannot be used as Scalars: numbers with 1 to 9 "
+      "components are needed.";
+  }
+  NodalArrayView view;
+  view.components = components;
+  view.name = name;
+  if (auto* floats = vtkFloatArray::SafeDownCast(array))
+  {
+    view.values = floats->GetPointer(0);
+  }
+  else
+  {
+    this->values_.emplace_back();
+    readValues(array, this->values_.back());
+    view.values = this->values_.back().data();
+  }
+  this->arrays_.push_back(view);
+  return {};
+}
+
+} // namespace filters
+} // namespace undecimate

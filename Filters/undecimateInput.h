@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file undecimateInput.h
+/// @brief What a decimator of Core sees of a vtkPolyData.
+
+#ifndef undecimateInput_h
+#define undecimateInput_h
+
+#include "undecimateArrays.h"
+
+#include "types.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+
+namespace undecimate
+{
+namespace filters
+{
+
+/// Numbers of faces that are not triangles.
+struct OtherFaces
+{
+  vtkIdType quads = 0;
+  vtkIdType polygons = 0; ///< five points and more
+  vtkIdType slivers = 0;  ///< fewer than three points: no face at all
+  vtkIdType strips = 0;
+
+  bool any() const { return this->quads + this->polygons + this->slivers + this->strips > 0; }
+
+  /// "3 quads and 1 triangle strip"
+  std::string describe() const;
+};
+
+OtherFaces countOtherFaces(vtkPolyData* mesh);
+
+/// The mesh with each quad, polygon and triangle strip cut into triangles, which inherit its cell
+/// data; vertex cells and lines as they are. Faces of fewer than three points and polygons that
+/// cannot be triangulated are dropped.
+/// @param cancelled asked now and then; when true the result is null
+/// @param[out] dropped number of faces that gave no triangle
+vtkSmartPointer<vtkPolyData> triangulated(
+  vtkPolyData* mesh, const std::function<bool()>& cancelled, vtkIdType& dropped);
+
+/// The mesh as Core's decimators want it. Points and arrays that fit are used where they lie.
+class MeshInput
+{
+public:
+  /// @param mesh faces are triangles
+  /// @return what is wrong, or an empty string
+  std::string read(vtkPolyData* mesh);
+
+  /// Add a point array that steers, by name; an empty name stands for the active point scalars.
+  /// @return what is wrong, or an empty string
+  std::string addArray(vtkPolyData* mesh, const std::string& name);
+
+  const TriangleMeshView& view() const { return this->view_; }
+  const std::vector<NodalArrayView>& arrays() const { return this->arrays_; }
+
+private:
+  void readPoints(vtkPolyData* mesh);
+  std::string readKept(vtkPolyData* mesh);
+
+  TriangleMeshView view_;
+  std::vector<NodalArrayView> arrays_;
+  std::vector<Index> triangles_;
+  std::vector<unsigned char> keep_;
+  std::vector<double> coordinates_;
+  std::vector<std::vector<float>> values_;
+};
+
+} // namespace filters
+} // namespace undecimate
+
+#endif

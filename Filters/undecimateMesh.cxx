@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "undecimateMesh.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <iterator>
+#include <new>
+#include <numeric>
+#include <utility>
+
+namespace undecimate
+{
+namespace filters
+{
+
+namespace
+{
+
+vtkSmartPointer<vtkPoints> makePoints(const ArrayPointer& coordinates)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetData(vtkDataArray::SafeDownCast(coordinates));
+  return points;
+}
+
+// Lines and vertex cells are the same at all levels, and their nodes are all in the coarse mesh.
+bool fits(vtkCellArray* cells, vtkIdType pointCount)
+{
+  std::vector<unsigned char> flags(cells->GetNumberOfCells() > 0 ? pointCount : 0);
+  return flagPoints(cells, flags);
+}
+
+} // namespace
+
+std::string UndecimatedMesh::open(vtkPolyData* coarse)
+{
+  *this = UndecimatedMesh();
+  if (std::string problem = readRecord(coarse, this->record_); !problem.empty())
+  {
+    return problem;
+  }
+  const Outcome outcome =
+    this->cursor_.open(this->record_.view, this->record_.baseTriangles.data());
+  std::vector<Index>().swap(this->record_.baseTriangles);
+  if (!outcome)
+  {
+    return outcome.message;
+  }
+  const vtkIdType points = coarse->GetNumberOfPoints();
+  if (!fits(coarse->GetVerts(), points) || !fits(coarse->GetLines(), points))
+  {
+    return "A vertex cell or a line of the coarse mesh refers to a point that does not exist.";
+  }
+  return {};
+}
+
+void UndecimatedMesh::show(vtkPolyData* coarse, Index steps, vtkPolyData* output)
+{
+  if (steps != this->cursor_.steps())
+  {
+    this->shown_ = nullptr;
+    this->cursor_.moveTo(steps);
+  }
+  if (this->atLevelOne())
+  {
+    if (!this->original_)
+    {
+      this->original_ = this->original(coarse);
+    }
+    output->ShallowCopy(this->original_);
+    return;
+  }
+  if (!this->shown_)
+  {
+    this->shown_ = this->prefix(coarse);
+  }
+  output->ShallowCopy(this->shown_);
+}
+
+ArrayPointer UndecimatedMesh::originalPointIds() const
+{
+  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+  numbers->SetName(kOriginalPointIds);
+  const Index count = this->cursor_.nodeCount();
+  numbers->SetNumberOfValues(count);
+  if (numbers->GetNumberOfValues() != count)
+  {
+    throw std::bad_alloc();
+  }
+  vtkIdType* number = numbers->GetPointer(0);
+  if (this->atLevelOne())
+  {
+    std::iota(number, number + count, vtkIdType{ 0 });
+  }
+  else
+  {
+    std::copy_n(this->record_.view.nodeOrder, count, number);
+  }
+  return numbers;
+}
+
+// A level below 1: prefixes of the arrays in record order.
+vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse) const
+{
+  const RecordFields& record = this->record_;
+  const Index base = record.view.baseNodeCount;
+  const Index back = this->cursor_.steps();
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->SetPoints(makePoints(join(coarse->GetPoints()->GetData(), base, record.points, back)));
+  mesh->SetVerts(coarse->GetVerts());
+  mesh->SetLines(coarse->GetLines());
+  mesh->SetPolys(makeTriangles(
+    this->cursor_.cells(), this->cursor_.cellCount(), record.header[kWidePolys] != 0));
+
+  vtkPointData* pointData = coarse->GetPointData();
+  std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
+  for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
+  {
+    const int place = record.pointArrays[i];
+    arrays[place] = join(pointData->GetAbstractArray(place), base, record.pointData[i], back);
+  }
+  setArrays(mesh->GetPointData(), pointData, arrays);
+
+  vtkCellData* cellData = coarse->GetCellData();
+  arrays.assign(cellData->GetNumberOfArrays(), nullptr);
+  const vtkIdType leading = record.header[kVertCount] + record.header[kLineCount];
+  for (std::size_t i = 0; i < record.cellArrays.size(); ++i)
+  {
+    vtkAbstractArray* described = cellData->GetAbstractArray(record.cellArrays[i]);
+    arrays[record.cellArrays[i]] = record.cellData[i]
+      ? gather(record.cellData[i], described, leading, this->cursor_.sources(),
+          this->cursor_.cellCount())
+      : ArrayPointer(described);
+  }
+  setArrays(mesh->GetCellData(), cellData, arrays);
+  return mesh;
+}
+
+// Level 1: the input of the decimation, in its own order.
+vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse) const
+{
+  const RecordFields& record = this->record_;
+  const RecordView& view = record.view;
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->SetPoints(makePoints(scatter(coarse->GetPoints()->GetData(), view.baseNodeCount,
+    record.points, view.stepCount, view.nodeOrder)));
+  mesh->SetVerts(mapPoints(coarse->GetVerts(), view.nodeOrder, record.header[kWideVerts] != 0));
+  mesh->SetLines(mapPoints(coarse->GetLines(), view.nodeOrder, record.header[kWideLines] != 0));
+  std::vector<Index> corners(std::size_t{ 3 } * view.cellCount);
+  const Index* cells = this->cursor_.cells();
+  for (Index slot = 0; slot < view.cellCount; ++slot)
+  {
+    Index* corner = corners.data() + std::size_t{ 3 } * view.cellOrder[slot];
+    std::transform(cells + std::size_t{ 3 } * slot, cells + std::size_t{ 3 } * (slot + 1), corner,
+      [&view](Index node) { return view.nodeOrder[node]; });
+  }
+  mesh->SetPolys(makeTriangles(corners.data(), view.cellCount, record.header[kWidePolys] != 0));
+
+  vtkPointData* pointData = coarse->GetPointData();
+  std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
+  for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
+  {
+    const int place = record.pointArrays[i];
+    arrays[place] = scatter(pointData->GetAbstractArray(place), view.baseNodeCount,
+      record.pointData[i], view.stepCount, view.nodeOrder);
+  }
+  setArrays(mesh->GetPointData(), pointData, arrays);
+
+  vtkCellData* cellData = coarse->GetCellData();
+  arrays.assign(cellData->GetNumberOfArrays(), nullptr);
+  for (std::size_t i = 0; i < record.cellArrays.size(); ++i)
+  {
+    vtkAbstractArray* described = cellData->GetAbstractArray(record.cellArrays[i]);
+    arrays[record.cellArrays[i]] =
+      record.cellData[i] ? share(record.cellData[i], described) : ArrayPointer(described);
+  }
+  setArrays(mesh->GetCellData(), cellData, arrays);
+  return mesh;
+}
+
+UndecimatedMesh* UndecimatedMeshCache::find(vtkPolyData* input, std::string& problem)
+{
+  const auto found = std::find_if(this->entries_.begin(), this->entries_.end(),
+    [input](const Entry& entry) { return entry.input == input; });
+  if (found != this->entries_.end() && found->time == input->GetMTime())
+  {
+    found->pass = this->pass_;
+    this->entries_.splice(this->entries_.begin(), this->entries_, found);
+    return found->mesh.get();
+  }
+  if (found != this->entries_.end())
+  {
+    this->entries_.erase(found);
+  }
+  this->forget();
+  auto mesh = std::make_unique<UndecimatedMesh>();
+  problem = mesh->open(input);
+  if (!problem.empty())
+  {
+    return nullptr;
+  }
+  this->entries_.push_front({ input, input->GetMTime(), this->pass_, std::move(mesh) });
+  return this->entries_.front().mesh.get();
+}
+
+void UndecimatedMeshCache::forget()
+{
+  this->entries_.remove_if([](const Entry& entry) { return !entry.input; });
+  while (this->entries_.size() >= kMaximumIdle && this->entries_.back().pass + 1 < this->pass_)
+  {
+    this->entries_.pop_back();
+  }
+}
+
+} // namespace filters
+} // namespace undecimate

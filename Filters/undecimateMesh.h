@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file undecimateMesh.h
+/// @brief The levels of one coarse mesh with its record, and a cache of several of them.
+
+#ifndef undecimateMesh_h
+#define undecimateMesh_h
+
+#include "undecimateRecordFields.h"
+
+#include "undecimation.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+#include "vtkWeakPointer.h"
+
+#include <list>
+#include <memory>
+#include <string>
+
+class vtkPolyData;
+
+namespace undecimate
+{
+namespace filters
+{
+
+/// A coarse mesh whose record is decoded: hands out the mesh at any level.
+///
+/// Between calls it stands at the last level, so a change costs the steps between and the copy of
+/// the output. Below level 1 points and triangles are in record order: a node has the same number
+/// at all these levels. At level 1 they are in the order of the original mesh.
+///
+/// Memory: the cursor (12 bytes a triangle), the mesh handed out last, and once level 1 was asked
+/// for, the original mesh.
+class UndecimatedMesh
+{
+public:
+  /// Decode the record in the field data of `coarse`.
+  /// @return what is wrong and what to do, or an empty string
+  std::string open(vtkPolyData* coarse);
+
+  /// The cursor; show() moves it.
+  const Undecimation& cursor() const { return this->cursor_; }
+
+  /// Put the mesh at a level into `output`: points, cells, point and cell data; no field data.
+  /// Arrays are shared between calls that ask for the same level.
+  /// @param coarse the mesh that was opened, unchanged
+  /// @param steps removed nodes that are back, 0 to cursor().stepCount()
+  void show(vtkPolyData* coarse, Index steps, vtkPolyData* output);
+
+  /// Original number of each point of the level shown last: array kOriginalPointIds.
+  ArrayPointer originalPointIds() const;
+
+private:
+  bool atLevelOne() const { return this->cursor_.steps() == this->cursor_.stepCount(); }
+  vtkSmartPointer<vtkPolyData> prefix(vtkPolyData* coarse) const;
+  vtkSmartPointer<vtkPolyData> original(vtkPolyData* coarse) const;
+
+  RecordFields record_;
+  Undecimation cursor_;
+  vtkSmartPointer<vtkPolyData> shown_;    // null at level 1
+  vtkSmartPointer<vtkPolyData> original_; // made on first use
+};
+
+/// The decoded meshes of the last inputs of a filter.
+///
+/// The key is the input object itself and its modification time, so that neither an older object in
+/// the place of a newer one nor the blocks of a composite get each other's levels. Meshes that are
+/// used neither in this pass of the pipeline nor in the one before are forgotten, the least
+/// recently used first, when there are more than kMaximumIdle meshes; those of deleted inputs at
+/// once.
+class UndecimatedMeshCache
+{
+public:
+  static constexpr std::size_t kMaximumIdle = 8;
+
+  /// The filter starts a pass (over one input, or over all blocks of a composite).
+  void startPass() { ++this->pass_; }
+
+  /// The decoded mesh of an input; opened if need be.
+  /// @param[out] problem why the result is null
+  UndecimatedMesh* find(vtkPolyData* input, std::string& problem);
+
+  /// Meshes in the cache.
+  std::size_t size() const { return this->entries_.size(); }
+
+private:
+  struct Entry
+  {
+    vtkWeakPointer<vtkPolyData> input;
+    vtkMTimeType time = 0;
+    vtkTypeUInt64 pass = 0;
+    std::unique_ptr<UndecimatedMesh> mesh;
+  };
+  void forget();
+
+  std::list<Entry> entries_; // most recently used first
+  vtkTypeUInt64 pass_ = 0;
+};
+
+} // namespace filters
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,587 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "undecimateRecordFields.h"
+
+#include "fingerprint.h"
+#include "hash_queue_decimation.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt32Array.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <set>
+#include <type_traits>
+#include <utility>
+
+namespace undecimate
+{
+namespace filters
+{
+
+namespace
+{
+
+const std::string kPrefix = "Undecimation.";
+
+std::string indexed(const char* word, std::size_t i)
+{
+  return word + std::to_string(i);
+}
+
+vtkDataArray* pointsOf(vtkPolyData* mesh)
+{
+  return mesh->GetPoints() ? mesh->GetPoints()->GetData() : nullptr;
+}
+
+std::int64_t signedBits(std::uint64_t hash)
+{
+  std::int64_t number;
+  std::memcpy(&number, &hash, sizeof(number));
+  return number;
+}
+
+std::int64_t cellsFingerprint(vtkPolyData* mesh)
+{
+  Fingerprint print;
+  for (vtkCellArray* cells : { mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys() })
+  {
+    print.add(signedBits(fingerprint(cells)));
+  }
+  return signedBits(print.value());
+}
+
+// A hash of the header (without itself) and the arrays, by name.
+std::int64_t checksum(const std::int64_t* header, vtkFieldData* fields)
+{
+  Fingerprint print;
+  print.add(header, kChecksum * sizeof(header[0]));
+  std::set<std::string> names;
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    const char* name = fields->GetAbstractArray(i)->GetName();
+    if (isRecordArray(name) && fields->GetAbstractArray(i)->GetNumberOfValues() > 0)
+    {
+      names.insert(name);
+    }
+  }
+  names.erase(kPrefix + "Header");
+  for (const std::string& name : names)
+  {
+    print.add(name);
+    print.add(signedBits(fingerprint(fields->GetAbstractArray(name.c_str()))));
+  }
+  return signedBits(print.value());
+}
+
+// The vector becomes a field data array; its memory is freed.
+template <class ArrayType, class Value>
+void write(vtkFieldData* fields, const char* name, std::vector<Value>& values)
+{
+  static_assert(sizeof(Value) == sizeof(typename ArrayType::ValueType), "same layout");
+  if (values.empty())
+  {
+    return;
+  }
+  const vtkIdType size = static_cast<vtkIdType>(values.size());
+  vtkNew<ArrayType> array;
+  array->SetName((kPrefix + name).c_str());
+  array->SetNumberOfValues(size);
+  if (array->GetNumberOfValues() != size)
+  {
+    throw std::bad_alloc();
+  }
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  std::vector<Value>().swap(values);
+  fields->AddArray(array);
+}
+
+void write(vtkFieldData* fields, const std::string& name, ArrayPointer array)
+{
+  array->SetName((kPrefix + name).c_str());
+  fields->AddArray(array);
+}
+
+void writeArrayFingerprints(vtkPolyData* coarse, int pointArrays, int cellArrays)
+{
+  vtkNew<vtkStringArray> names;
+  names->SetName((kPrefix + "ArrayNames").c_str());
+  std::vector<std::int64_t> prints;
+  const auto add = [&](const char* association, vtkFieldData* arrays, int count)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      vtkAbstractArray* array = arrays->GetAbstractArray(i);
+      names->InsertNextValue(association + std::string(array->GetName() ? array->GetName() : ""));
+      prints.push_back(signedBits(fingerprint(array)));
+    }
+  };
+  add("point:", coarse->GetPointData(), pointArrays);
+  add("cell:", coarse->GetCellData(), cellArrays);
+  if (names->GetNumberOfValues() > 0)
+  {
+    coarse->GetFieldData()->AddArray(names);
+    write<vtkTypeInt64Array>(coarse->GetFieldData(), "ArrayFingerprints", prints);
+  }
+}
+
+void writeNodalValues(const Record& record, vtkPolyData* mesh, vtkFieldData* fields)
+{
+  const Index removed = record.nodeCount - record.baseNodeCount;
+  if (removed == 0)
+  {
+    return;
+  }
+  const Index* numbers = record.nodeOrder.data() + record.baseNodeCount;
+  write(fields, "Points", gather(pointsOf(mesh), pointsOf(mesh), 0, numbers, removed));
+  vtkPointData* data = mesh->GetPointData();
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = data->GetAbstractArray(i);
+    write(fields, indexed("PointData.", i), gather(array, array, 0, numbers, removed));
+  }
+}
+
+// ---- reading ----
+
+std::string damaged(const std::string& what)
+{
+  return "The undecimation record is damaged: " + what +
+    ". Run Hash Queue Decimation again, or load an undamaged file.";
+}
+
+// Whether an array is a plain list of numbers of the size and kind of Value.
+template <class Value>
+bool isFlat(vtkAbstractArray* array)
+{
+  const int type = array->GetDataType();
+  return vtkDataArray::SafeDownCast(array) && array->HasStandardMemoryLayout() &&
+    array->GetNumberOfComponents() == 1 && type != VTK_BIT &&
+    array->GetDataTypeSize() == static_cast<int>(sizeof(Value)) &&
+    (type == VTK_FLOAT || type == VTK_DOUBLE) == std::is_floating_point<Value>::value;
+}
+
+// Reads the record's arrays one after the other and remembers the first thing that is wrong.
+class FieldReader
+{
+public:
+  FieldReader(vtkFieldData* fields, RecordFields& record)
+    : fields_(fields)
+    , record_(record)
+  {
+  }
+
+  const std::string& problem() const { return this->problem_; }
+
+  /// A flat array of numbers of the size and kind of Value; null if size is 0 or on a problem.
+  template <class Value>
+  const Value* read(const char* name, std::int64_t size)
+  {
+    ArrayPointer array = this->find(name, size);
+    if (!array)
+    {
+      return nullptr;
+    }
+    if (!isFlat<Value>(array))
+    {
+      this->fail(std::string("array '") + kPrefix + name + "' has the type " + typeName(array) +
+        " with " + std::to_string(array->GetNumberOfComponents()) + " components");
+      return nullptr;
+    }
+    this->record_.kept.push_back(array);
+    return static_cast<const Value*>(array->GetVoidPointer(0));
+  }
+
+  ArrayPointer readStrings(const char* name, std::int64_t size)
+  {
+    ArrayPointer array = this->find(name, size);
+    if (array && (!vtkStringArray::SafeDownCast(array) || array->GetNumberOfComponents() != 1))
+    {
+      this->fail(std::string("array '") + kPrefix + name + "' has the type " + typeName(array));
+      return nullptr;
+    }
+    return array;
+  }
+
+  /// Values of an array of the mesh, with the type and the components of `like`.
+  ArrayPointer readLike(const std::string& name, vtkAbstractArray* like, std::int64_t tuples)
+  {
+    ArrayPointer array = this->find(name, tuples);
+    if (array &&
+      (array->GetDataType() != like->GetDataType() ||
+        array->GetNumberOfComponents() != like->GetNumberOfComponents()))
+    {
+      this->fail("array '" + kPrefix + name + "' has the type " + typeName(array) + " with " +
+        std::to_string(array->GetNumberOfComponents()) + " components, the mesh's array has " +
+        typeName(like) + " with " + std::to_string(like->GetNumberOfComponents()));
+      return nullptr;
+    }
+    return array;
+  }
+
+private:
+  ArrayPointer find(const std::string& name, std::int64_t tuples)
+  {
+    if (tuples == 0 || !this->problem_.empty())
+    {
+      return nullptr;
+    }
+    vtkAbstractArray* array = this->fields_->GetAbstractArray((kPrefix + name).c_str());
+    if (!array)
+    {
+      this->fail("field data array '" + kPrefix + name + "' is missing");
+    }
+    else if (array->GetNumberOfTuples() != tuples)
+    {
+      this->fail("field data array '" + kPrefix + name + "' has " +
+        std::to_string(array->GetNumberOfTuples()) + " tuples instead of " +
+        std::to_string(tuples));
+      array = nullptr;
+    }
+    return array;
+  }
+
+  void fail(const std::string& what)
+  {
+    if (this->problem_.empty())
+    {
+      this->problem_ = damaged(what);
+    }
+  }
+
+  vtkFieldData* fields_;
+  RecordFields& record_;
+  std::string problem_;
+};
+
+std::string readHeader(vtkPolyData* mesh, std::int64_t* header)
+{
+  vtkFieldData* fields = mesh->GetFieldData();
+  vtkAbstractArray* found = fields->GetAbstractArray((kPrefix + "Header").c_str());
+  if (!found)
+  {
+    return "The input has no undecimation record (field data array 'Undecimation.Header'). Connect "
+           "the output Progressive Mesh (port 0) of Hash Queue Decimation directly; its other "
+           "output "
+           "has no record, and filters in between may drop it.";
+  }
+  if (!isFlat<std::int64_t>(found) || found->GetNumberOfValues() < 1)
+  {
+    return damaged("the header has the type " + typeName(found) + " and " +
+      std::to_string(found->GetNumberOfValues()) + " values");
+  }
+  const auto* values = static_cast<const std::int64_t*>(found->GetVoidPointer(0));
+  if (values[kVersion] > kRecordVersion)
+  {
+    return "The undecimation record has format version " + std::to_string(values[kVersion]) +
+      "; this version of Undecimate reads versions up to " + std::to_string(kRecordVersion) +
+      ". Update Undecimate.";
+  }
+  if (values[kVersion] < 1 || found->GetNumberOfValues() != kHeaderSize)
+  {
+    return damaged("the header has version " + std::to_string(values[kVersion]) + " and " +
+      std::to_string(found->GetNumberOfValues()) + " values");
+  }
+  std::copy_n(values, static_cast<int>(kHeaderSize), header);
+  if (checksum(header, fields) != header[kChecksum])
+  {
+    return damaged("the checksum of its arrays is wrong");
+  }
+  for (int field = kNodeCount; field < kPointsFingerprint; ++field)
+  {
+    const bool wide = field == kPatchSize || field == kLostSourceSize;
+    if (header[field] < 0 || (!wide && header[field] > std::numeric_limits<Index>::max()))
+    {
+      return damaged(
+        "header entry " + std::to_string(field) + " is " + std::to_string(header[field]));
+    }
+  }
+  return {};
+}
+
+// What was done to the arrays of a mesh since the record was written, and where they are now.
+class ArrayComparison
+{
+public:
+  ArrayComparison(vtkFieldData* arrays, std::string kind)
+    : arrays_(arrays)
+    , kind_(std::move(kind))
+    , known_(arrays->GetNumberOfArrays(), false)
+  {
+  }
+
+  void expect(const std::string& name, std::int64_t print, std::vector<int>& places)
+  {
+    int place = static_cast<int>(places.size());
+    if (!name.empty())
+    {
+      this->arrays_->GetAbstractArray(name.c_str(), place);
+    }
+    if (place < 0 || place >= this->arrays_->GetNumberOfArrays() || this->known_[place])
+    {
+      this->note(this->kind_ + " array '" + name + "' was removed or renamed");
+      place = -1;
+    }
+    else
+    {
+      this->known_[place] = true;
+      if (signedBits(fingerprint(this->arrays_->GetAbstractArray(place))) != print)
+      {
+        this->note("the values or the type of " + this->kind_ + " array '" + name + "' changed");
+      }
+    }
+    places.push_back(place);
+  }
+
+  /// Call last. @param ignored name of an array that may be there
+  std::string differences(const char* ignored)
+  {
+    for (std::size_t i = 0; i < this->known_.size(); ++i)
+    {
+      const char* found = this->arrays_->GetAbstractArray(static_cast<int>(i))->GetName();
+      const std::string name = found ? found : "";
+      if (!this->known_[i] && !(ignored && name == ignored))
+      {
+        this->note(this->kind_ + " array '" + name + "' was added or renamed");
+      }
+    }
+    return this->text_;
+  }
+
+private:
+  void note(const std::string& what) { this->text_ += (this->text_.empty() ? "" : "; ") + what; }
+
+  vtkFieldData* arrays_;
+  std::string kind_;
+  std::vector<bool> known_;
+  std::string text_;
+};
+
+std::string compareArrays(vtkPolyData* mesh, FieldReader& reader, RecordFields& record)
+{
+  const std::int64_t pointArrays = record.header[kPointArrayCount];
+  const std::int64_t count = pointArrays + record.header[kCellArrayCount];
+  const std::int64_t* prints = reader.read<std::int64_t>("ArrayFingerprints", count);
+  ArrayPointer names = reader.readStrings("ArrayNames", count);
+  if (!reader.problem().empty())
+  {
+    return {};
+  }
+  ArrayComparison points(mesh->GetPointData(), "point");
+  ArrayComparison cells(mesh->GetCellData(), "cell");
+  for (std::int64_t i = 0; i < count; ++i)
+  {
+    const std::string name = names->GetVariantValue(i).ToString();
+    const std::string bare = name.substr(std::min(name.size(), name.find(':') + 1));
+    if (i < pointArrays)
+    {
+      points.expect(bare, prints[i], record.pointArrays);
+    }
+    else
+    {
+      cells.expect(bare, prints[i], record.cellArrays);
+    }
+  }
+  const std::string first =
+    points.differences(record.header[kHasOriginalPointIds] ? kOriginalPointIds : nullptr);
+  const std::string second = cells.differences(nullptr);
+  return first + (first.empty() || second.empty() ? "" : "; ") + second;
+}
+
+std::string compareCells(vtkPolyData* mesh, const std::int64_t* header)
+{
+  const std::pair<const char*, std::pair<std::int64_t, std::int64_t>> counts[] = {
+    { " vertex cells", { mesh->GetNumberOfVerts(), header[kVertCount] } },
+    { " lines", { mesh->GetNumberOfLines(), header[kLineCount] } },
+    { " polygons", { mesh->GetNumberOfPolys(), header[kBaseCellCount] } },
+    { " triangle strips", { mesh->GetNumberOfStrips(), 0 } },
+  };
+  for (const auto& [word, numbers] : counts)
+  {
+    if (numbers.first != numbers.second)
+    {
+      return "it has " + std::to_string(numbers.first) + word + " instead of " +
+        std::to_string(numbers.second);
+    }
+  }
+  return cellsFingerprint(mesh) == header[kCellsFingerprint] ? ""
+                                                             : "the points of its cells changed";
+}
+
+// What was done to the mesh since the record was written; empty if nothing.
+std::string compareMesh(vtkPolyData* mesh, FieldReader& reader, RecordFields& record)
+{
+  const std::int64_t* header = record.header;
+  if (mesh->GetNumberOfPoints() != header[kBaseNodeCount])
+  {
+    return "it has " + std::to_string(mesh->GetNumberOfPoints()) + " points instead of " +
+      std::to_string(header[kBaseNodeCount]);
+  }
+  std::string text = compareCells(mesh, header);
+  const std::string arrays = compareArrays(mesh, reader, record);
+  text += (text.empty() || arrays.empty() ? "" : "; ") + arrays;
+  if (signedBits(fingerprint(pointsOf(mesh))) != header[kPointsFingerprint])
+  {
+    text += (text.empty() ? "" : "; ") +
+      std::string("the coordinates of its points or their type changed");
+  }
+  return text;
+}
+
+void readArrays(FieldReader& reader, RecordFields& record)
+{
+  const std::int64_t* header = record.header;
+  RecordView& view = record.view;
+  view.nodeCount = static_cast<Index>(header[kNodeCount]);
+  view.cellCount = static_cast<Index>(header[kCellCount]);
+  view.baseNodeCount = static_cast<Index>(header[kBaseNodeCount]);
+  view.baseCellCount = static_cast<Index>(header[kBaseCellCount]);
+  view.stepCount = view.nodeCount - view.baseNodeCount;
+  view.shapeCount = static_cast<Index>(header[kShapeCount]);
+  view.patchSize = header[kPatchSize];
+  view.cornersPerCell = static_cast<int>(header[kCornersPerCell]);
+  view.hasSources = header[kHasSources] != 0;
+  view.lostSourceSize = header[kLostSourceSize];
+
+  view.nodeOrder = reader.read<Index>("NodeOrder", view.nodeCount);
+  view.cellOrder = reader.read<Index>("CellOrder", view.cellCount);
+  view.stepShapes = reader.read<Index>("StepShapes", view.stepCount);
+  view.stepErrors = reader.read<float>("StepErrors", view.stepCount);
+  view.patches = reader.read<Index>("Patches", view.patchSize);
+  view.shapeOffsets = reader.read<Index>("ShapeOffsets", view.shapeCount + std::int64_t{ 1 });
+  if (view.shapeOffsets)
+  {
+    view.shapes =
+      reader.read<unsigned char>("Shapes", std::max<Index>(0, view.shapeOffsets[view.shapeCount]));
+  }
+  view.baseSources =
+    reader.read<Index>("BaseSources", view.hasSources ? view.baseCellCount : Index{ 0 });
+  view.lostSources =
+    reader.read<Index>("LostSources", view.hasSources ? view.lostSourceSize : std::int64_t{ 0 });
+}
+
+void readValues(vtkPolyData* mesh, FieldReader& reader, RecordFields& record)
+{
+  const Index removed = record.view.stepCount;
+  record.points = reader.readLike("Points", pointsOf(mesh), removed);
+  for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
+  {
+    record.pointData.push_back(reader.readLike(indexed("PointData.", i),
+      mesh->GetPointData()->GetAbstractArray(record.pointArrays[i]), removed));
+  }
+  const std::int64_t cells =
+    record.header[kVertCount] + record.header[kLineCount] + record.view.cellCount;
+  for (std::size_t i = 0; i < record.cellArrays.size(); ++i)
+  {
+    record.cellData.push_back(reader.readLike(
+      indexed("CellData.", i), mesh->GetCellData()->GetAbstractArray(record.cellArrays[i]), cells));
+  }
+}
+
+} // namespace
+
+bool isRecordArray(const char* name)
+{
+  return name && std::string(name).compare(0, kPrefix.size(), kPrefix) == 0;
+}
+
+void passFieldData(vtkFieldData* from, vtkFieldData* to)
+{
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    if (!isRecordArray(from->GetAbstractArray(i)->GetName()))
+    {
+      to->AddArray(from->GetAbstractArray(i));
+    }
+  }
+}
+
+void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse,
+  bool hasOriginalPointIds)
+{
+  Record& record = result.record;
+  vtkFieldData* fields = coarse->GetFieldData();
+  const int pointArrays = mesh->GetPointData()->GetNumberOfArrays();
+  const int cellArrays = mesh->GetCellData()->GetNumberOfArrays();
+
+  std::vector<std::int64_t> header(kHeaderSize);
+  header[kVersion] = kRecordVersion;
+  header[kNodeCount] = record.nodeCount;
+  header[kCellCount] = record.cellCount;
+  header[kBaseNodeCount] = record.baseNodeCount;
+  header[kBaseCellCount] = record.baseCellCount;
+  header[kShapeCount] = static_cast<std::int64_t>(record.shapeOffsets.size()) - 1;
+  header[kPatchSize] = static_cast<std::int64_t>(record.patches.size());
+  header[kLostSourceSize] = static_cast<std::int64_t>(record.lostSources.size());
+  header[kCornersPerCell] = record.cornersPerCell;
+  header[kHasSources] = record.hasSources;
+  header[kVertCount] = mesh->GetNumberOfVerts();
+  header[kLineCount] = mesh->GetNumberOfLines();
+  header[kWideVerts] = mesh->GetVerts()->IsStorage64Bit();
+  header[kWideLines] = mesh->GetLines()->IsStorage64Bit();
+  header[kWidePolys] = mesh->GetPolys()->IsStorage64Bit();
+  header[kPointArrayCount] = pointArrays;
+  header[kCellArrayCount] = cellArrays;
+  header[kHasOriginalPointIds] = hasOriginalPointIds;
+  header[kPointsFingerprint] = signedBits(fingerprint(pointsOf(coarse)));
+  header[kCellsFingerprint] = cellsFingerprint(coarse);
+
+  writeNodalValues(record, mesh, fields);
+  for (int i = 0; i < cellArrays; ++i)
+  {
+    vtkAbstractArray* array = mesh->GetCellData()->GetAbstractArray(i);
+    write(fields, indexed("CellData.", i), share(array, array));
+  }
+  writeArrayFingerprints(coarse, pointArrays, cellArrays);
+  write<vtkTypeInt32Array>(fields, "NodeOrder", record.nodeOrder);
+  write<vtkTypeInt32Array>(fields, "CellOrder", record.cellOrder);
+  write<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes);
+  write<vtkFloatArray>(fields, "StepErrors", record.stepErrors);
+  write<vtkTypeInt32Array>(fields, "Patches", record.patches);
+  write<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets);
+  write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
+  write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
+  write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
+  header[kChecksum] = checksum(header.data(), fields);
+  write<vtkTypeInt64Array>(fields, "Header", header);
+}
+
+std::string readRecord(vtkPolyData* mesh, RecordFields& record)
+{
+  if (std::string problem = readHeader(mesh, record.header); !problem.empty())
+  {
+    return problem;
+  }
+  FieldReader reader(mesh->GetFieldData(), record);
+  const std::string changes = compareMesh(mesh, reader, record);
+  if (!changes.empty())
+  {
+    return "The mesh was changed after the decimation: " + changes +
+      ". Apply Undecimation to the output of Hash Queue Decimation, and the other filters to the "
+      "output of Undecimation.";
+  }
+  readArrays(reader, record);
+  if (reader.problem().empty())
+  {
+    readValues(mesh, reader, record);
+  }
+  record.baseTriangles = readTriangles(mesh->GetPolys(), mesh->GetNumberOfPoints()).corners;
+  return reader.problem();
+}
+
+} // namespace filters
+} // namespace undecimate

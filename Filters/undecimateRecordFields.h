@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file undecimateRecordFields.h
+/// @brief How a record travels: as field data arrays of the coarse mesh.
+///
+/// All names start with "Undecimation."; arrays without a value are left out. Numbers of nodes and
+/// cells are in record order (record.h) unless stated otherwise.
+///
+/// | name               | type            | values |
+/// | ------------------ | --------------- | ------ |
+/// | .Header            | int64           | see HeaderField |
+/// | .NodeOrder         | int32           | a node: its original number |
+/// | .CellOrder         | int32           | a triangle slot: its original number among the
+/// triangles | | .StepShapes        | int32           | a step: its shape | | .StepErrors        |
+/// float           | a step: error before it is undone | | .Patches           | int32           |
+/// slots and extra nodes, step after step | | .ShapeOffsets      | int32           | where each
+/// shape starts in .Shapes, and the end | | .Shapes            | unsigned char   | the shapes | |
+/// .BaseSources       | int32           | a triangle of the coarse mesh: original triangle shown |
+/// | .LostSources       | int32           | original triangles of old cells without heir |
+/// | .Points            | as the points   | x, y, z of a removed node |
+/// | .PointData.i       | as the array    | values of point array i at a removed node |
+/// | .CellData.i        | as the array    | all values of cell array i, in original order |
+/// | .ArrayNames        | string          | "point:" or "cell:" and the name (may be empty) |
+/// | .ArrayFingerprints | int64           | one for each name: of the coarse mesh's array |
+///
+/// The types are those that VTK's XML files keep.
+
+#ifndef undecimateRecordFields_h
+#define undecimateRecordFields_h
+
+#include "undecimateArrays.h"
+
+#include "record.h"
+
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+
+namespace undecimate
+{
+
+struct HashQueueDecimationResult;
+
+namespace filters
+{
+
+/// Format version that is written, and the newest that is read.
+constexpr std::int64_t kRecordVersion = 1;
+
+/// Entries of the array .Header.
+enum HeaderField
+{
+  kVersion = 0,         ///< kRecordVersion; always the first entry
+  kNodeCount,           ///< of level 1
+  kCellCount,           ///< triangles of level 1
+  kBaseNodeCount,       ///< of level 0
+  kBaseCellCount,       ///< triangles of level 0
+  kShapeCount,          ///< shapes of steps
+  kPatchSize,           ///< values of .Patches
+  kLostSourceSize,      ///< values of .LostSources
+  kCornersPerCell,      ///< 3
+  kHasSources,          ///< 1 if sources are recorded (there is cell data)
+  kVertCount,           ///< vertex cells, the same at all levels
+  kLineCount,           ///< line cells, the same at all levels
+  kWideVerts,           ///< 1 if the input's vertex cells are stored in 64 bits, 0 if in 32
+  kWideLines,           ///< the same for lines
+  kWidePolys,           ///< the same for triangles
+  kPointArrayCount,     ///< point arrays of the input
+  kCellArrayCount,      ///< cell arrays of the input
+  kHasOriginalPointIds, ///< 1 if the decimation added the array vtkOriginalPointIds
+  kPointsFingerprint,   ///< of the coarse mesh's points
+  kCellsFingerprint,    ///< of the coarse mesh's vertex cells, lines and triangles
+  kChecksum,            ///< of all entries above and all other arrays
+  kHeaderSize
+};
+
+/// Name of the array of original point numbers, on request in both filters.
+constexpr const char* kOriginalPointIds = "vtkOriginalPointIds";
+
+/// Whether a field data array belongs to a record.
+bool isRecordArray(const char* name);
+
+/// Add all arrays of `from` to `to` but those of a record.
+void passFieldData(vtkFieldData* from, vtkFieldData* to);
+
+/// Add the record to the field data of the coarse mesh.
+/// @param result of the decimation; its arrays are freed as they are written
+/// @param mesh the input of the decimation
+/// @param coarse its output: points, cells, point and cell data, complete
+/// @param hasOriginalPointIds the last point array of `coarse` is kOriginalPointIds, added to
+/// mesh's
+void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse,
+  bool hasOriginalPointIds);
+
+/// A record as it was found in the field data of a mesh. Keeps the arrays alive.
+struct RecordFields
+{
+  RecordView view;
+  std::int64_t header[kHeaderSize] = {};
+  std::vector<Index> baseTriangles;    ///< of the mesh that was read
+  ArrayPointer points;                 ///< of the removed nodes; null if there are none
+  std::vector<int> pointArrays;        ///< number of each point array in the mesh that was read
+  std::vector<ArrayPointer> pointData; ///< its values at the removed nodes; null if there are none
+  std::vector<int> cellArrays;         ///< number of each cell array in the mesh that was read
+  std::vector<ArrayPointer> cellData;  ///< its values at level 1; null if there are no cells
+  std::vector<ArrayPointer> kept;      ///< the arrays that `view` points into
+};
+
+/// Find the record in a mesh's field data, and check that it is whole and belongs to the mesh as it
+/// is. What the record itself says is checked by Undecimation::open().
+/// @return what is wrong and what to do, or an empty string
+/// Complexity: O(mesh + record).
+std::string readRecord(vtkPolyData* mesh, RecordFields& fields);
+
+} // namespace filters
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,428 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "vtkHashQueueDecimation.h"
+
+#include "undecimateArrays.h"
+#include "undecimateCompatibility.h"
+#include "undecimateInput.h"
+#include "undecimateRecordFields.h"
+
+#include "hash_queue_decimation.h"
+#include "monitor.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using namespace undecimate;
+using namespace undecimate::filters;
+
+vtkStandardNewMacro(vtkHashQueueDecimation);
+
+namespace
+{
+
+constexpr double kCoreShare = 0.95; // of the progress; the rest is for the output
+constexpr double kRightAngle = 90.0;
+
+// Thrown for a request that cannot be met; the text is the error message.
+struct BrokenRequest
+{
+  std::string message;
+};
+
+void require(const std::string& problem)
+{
+  if (!problem.empty())
+  {
+    throw BrokenRequest{ problem };
+  }
+}
+
+bool isEmpty(vtkPolyData* mesh)
+{
+  return mesh->GetNumberOfPoints() == 0 && mesh->GetNumberOfCells() == 0;
+}
+
+// Place of each original node in the coarse mesh, for the nodes that are left.
+std::vector<Index> basePlaces(const Record& record)
+{
+  std::vector<Index> places(record.nodeCount, kNone);
+  for (Index i = 0; i < record.baseNodeCount; ++i)
+  {
+    places[record.nodeOrder[i]] = i;
+  }
+  return places;
+}
+
+ArrayPointer originalPointIds(const Record& record)
+{
+  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+  numbers->SetName(kOriginalPointIds);
+  numbers->SetNumberOfValues(record.baseNodeCount);
+  std::copy_n(record.nodeOrder.begin(), record.baseNodeCount, numbers->GetPointer(0));
+  return numbers;
+}
+
+void fillPoints(const Record& record, vtkPolyData* mesh, vtkPolyData* coarse)
+{
+  const Index* numbers = record.nodeOrder.data();
+  if (mesh->GetPoints())
+  {
+    vtkDataArray* all = mesh->GetPoints()->GetData();
+    vtkNew<vtkPoints> points;
+    points->SetData(vtkDataArray::SafeDownCast(gather(all, all, 0, numbers, record.baseNodeCount)));
+    coarse->SetPoints(points);
+  }
+  std::vector<ArrayPointer> arrays;
+  for (int i = 0; i < mesh->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = mesh->GetPointData()->GetAbstractArray(i);
+    arrays.push_back(gather(array, array, 0, numbers, record.baseNodeCount));
+  }
+  setArrays(coarse->GetPointData(), mesh->GetPointData(), arrays);
+}
+
+void fillCells(const HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse)
+{
+  const Record& record = result.record;
+  coarse->SetPolys(makeTriangles(
+    result.baseTriangles.data(), record.baseCellCount, mesh->GetPolys()->IsStorage64Bit()));
+  const vtkIdType leading = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
+  if (leading > 0)
+  {
+    const std::vector<Index> places = basePlaces(record);
+    coarse->SetVerts(
+      mapPoints(mesh->GetVerts(), places.data(), mesh->GetVerts()->IsStorage64Bit()));
+    coarse->SetLines(
+      mapPoints(mesh->GetLines(), places.data(), mesh->GetLines()->IsStorage64Bit()));
+  }
+  std::vector<ArrayPointer> arrays;
+  for (int i = 0; i < mesh->GetCellData()->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = mesh->GetCellData()->GetAbstractArray(i);
+    arrays.push_back(
+      gather(array, array, leading, record.baseSources.data(), record.baseCellCount));
+  }
+  setArrays(coarse->GetCellData(), mesh->GetCellData(), arrays);
+}
+
+// "12 non-manifold nodes, 3 unused nodes": what was never removed, for the warning.
+std::string describeKept(const HashQueueDecimationResult& result)
+{
+  const std::pair<Index, const char*> reasons[] = {
+    { result.requestedNodes, "of vertex cells, lines or ghosts" },
+    { result.nonFiniteNodes, "with a coordinate that is not a finite number" },
+    { result.unusedNodes, "without a triangle" },
+    { result.degenerateNodes, "of degenerate or repeated triangles" },
+    { result.nonManifoldNodes, "where the surface is not a manifold" },
+    { result.boundaryNodes, "on the boundary" },
+  };
+  std::string text;
+  for (const auto& [count, reason] : reasons)
+  {
+    if (count > 0)
+    {
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
+    }
+  }
+  return text.empty() ? "" : " Nodes that are always kept: " + text + ".";
+}
+
+} // namespace
+
+struct vtkHashQueueDecimation::Internals
+{
+  std::vector<std::string> Scalars;
+  std::vector<std::string> Reasons; // one of each kind
+  std::string StopReason;
+  bool SaidTriangulated = false;
+
+  void addReason(const std::string& reason)
+  {
+    if (std::find(this->Reasons.begin(), this->Reasons.end(), reason) == this->Reasons.end())
+    {
+      this->Reasons.push_back(reason);
+      this->StopReason += (this->StopReason.empty() ? "" : ", ") + reason;
+    }
+  }
+};
+
+vtkHashQueueDecimation::vtkHashQueueDecimation()
+  : Private(std::make_unique<Internals>())
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkHashQueueDecimation::~vtkHashQueueDecimation() = default;
+
+void vtkHashQueueDecimation::AddScalars(const char* name)
+{
+  std::vector<std::string>& names = this->Private->Scalars;
+  if (name && *name && std::find(names.begin(), names.end(), name) == names.end())
+  {
+    names.emplace_back(name);
+    this->Modified();
+  }
+}
+
+void vtkHashQueueDecimation::ClearScalars()
+{
+  if (!this->Private->Scalars.empty())
+  {
+    this->Private->Scalars.clear();
+    this->Modified();
+  }
+}
+
+int vtkHashQueueDecimation::GetNumberOfScalars()
+{
+  return static_cast<int>(this->Private->Scalars.size());
+}
+
+const char* vtkHashQueueDecimation::GetScalars(int index)
+{
+  return index >= 0 && index < this->GetNumberOfScalars() ? this->Private->Scalars[index].c_str()
+                                                          : nullptr;
+}
+
+const char* vtkHashQueueDecimation::GetStopReason()
+{
+  return this->Private->StopReason.c_str();
+}
+
+// Each execution starts with REQUEST_DATA_NOT_GENERATED, once for all blocks of a composite.
+int vtkHashQueueDecimation::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()))
+  {
+    this->NumberOfInputNodes = 0;
+    this->NumberOfInputTriangles = 0;
+    this->NumberOfNodes = 0;
+    this->NumberOfTriangles = 0;
+    this->Error = 0.0;
+    this->Private->Reasons.clear();
+    this->Private->StopReason.clear();
+  }
+  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+int vtkHashQueueDecimation::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  vtkPolyData* output = vtkPolyData::GetData(outputVector, PROGRESSIVE_MESH);
+  vtkPolyData* bare = vtkPolyData::GetData(outputVector, COARSE_MESH);
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  const bool pieces = outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  try
+  {
+    if (isEmpty(input))
+    {
+      output->ShallowCopy(input);
+      bare->ShallowCopy(input);
+      return 1;
+    }
+    vtkSmartPointer<vtkPolyData> mesh = this->PrepareMesh(input);
+    HashQueueDecimationResult result;
+    if (mesh && this->Decimate(mesh, pieces, result))
+    {
+      this->FillOutput(mesh, result, bare);
+      output->ShallowCopy(bare);
+      writeRecord(result, mesh, output, this->OriginalPointIds != 0);
+      return 1;
+    }
+    output->Initialize();
+    bare->Initialize();
+    return 1;
+  }
+  catch (const BrokenRequest& broken)
+  {
+    vtkErrorMacro(<< broken.message);
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro("Not enough memory to decimate " << input->GetNumberOfPoints() << " points and "
+                                                   << input->GetNumberOfPolys() << " triangles.");
+  }
+  catch (const std::exception& problem)
+  {
+    vtkErrorMacro("The decimation failed: " << problem.what());
+  }
+  output->Initialize();
+  bare->Initialize();
+  return 0;
+}
+
+// The mesh to decimate: triangles, and no array of the name that we will add. Null on abort.
+vtkSmartPointer<vtkPolyData> vtkHashQueueDecimation::PrepareMesh(vtkPolyData* input)
+{
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->ShallowCopy(input);
+  if (this->OriginalPointIds && mesh->GetPointData()->HasArray(kOriginalPointIds))
+  {
+    vtkWarningMacro("The input's point array '"
+      << kOriginalPointIds
+      << "' gives way to the one that OriginalPointIds adds. Rename it to keep it.");
+    mesh->GetPointData()->RemoveArray(kOriginalPointIds);
+  }
+  if (mesh->GetNumberOfVerts() > 0 || mesh->GetNumberOfLines() > 0)
+  {
+    vtkWarningMacro(<< mesh->GetNumberOfVerts() << " vertex cells and " << mesh->GetNumberOfLines()
+                    << " lines are passed along unchanged; their nodes are kept at all levels.");
+  }
+  const OtherFaces others = countOtherFaces(mesh);
+  if (!others.any())
+  {
+    return mesh;
+  }
+  if (!this->Triangulate)
+  {
+    require("The input has " + others.describe() +
+      "; the decimation needs triangles. Turn on the property Triangulate to cut them into "
+      "triangles, or apply the filter Triangulate first.");
+  }
+  vtkIdType dropped = 0;
+  mesh = triangulated(
+    mesh, [this] { return checkAbort(this, 0); }, dropped);
+  if (mesh && !this->Private->SaidTriangulated)
+  {
+    this->Private->SaidTriangulated = true;
+    vtkWarningMacro(<< others.describe()
+                    << " of the input were cut into triangles, as Triangulate asks: level 1 of the "
+                       "undecimation is the triangulated mesh.");
+  }
+  if (mesh && dropped > 0)
+  {
+    vtkWarningMacro(<< dropped << " faces of the input gave no triangle and were left out.");
+  }
+  return mesh;
+}
+
+// Run the core. False if the user stopped it.
+bool vtkHashQueueDecimation::Decimate(
+  vtkPolyData* mesh, bool pieces, HashQueueDecimationResult& result)
+{
+  MeshInput view;
+  require(view.read(mesh));
+  const std::vector<std::string>& names = this->Private->Scalars;
+  if (this->Criterion == SCALAR_DIFFERENCE)
+  {
+    require(view.addArray(mesh, names.empty() ? std::string() : names.front()));
+  }
+  for (std::size_t i = 0; this->Criterion == DEVIATION && i < names.size(); ++i)
+  {
+    require(view.addArray(mesh, names[i]));
+  }
+
+  HashQueueDecimationOptions options;
+  options.criterion = static_cast<undecimate::Criterion>(this->Criterion);
+  options.targetReduction = this->TargetReduction;
+  options.targetNodes = this->TargetNodes;
+  options.targetTriangles = this->TargetTriangles;
+  // 1 means no limit for every criterion, so that the default does not limit angles to a degree.
+  options.maximumError = this->Criterion == ANGLE_TO_XY_PLANE && this->MaximumError == 1.0
+    ? kRightAngle
+    : this->MaximumError;
+  options.intervalSpacing = static_cast<undecimate::IntervalSpacing>(this->IntervalSpacing);
+  options.intervalNodes = this->IntervalNodes;
+  options.preserveBoundary = this->PreserveBoundary || pieces;
+  options.arrays = view.arrays();
+  options.scalarWeight = this->ScalarWeight;
+  options.trackCellSources = mesh->GetCellData()->GetNumberOfArrays() > 0;
+
+  Monitor monitor(
+    [this](double fraction)
+    {
+      this->UpdateProgress(kCoreShare * fraction);
+      return !checkAbort(this, 0);
+    });
+  const Outcome outcome = decimate(view.view(), options, monitor, result);
+  if (outcome.status == Status::Cancelled)
+  {
+    return false;
+  }
+  require(outcome.message);
+  return true;
+}
+
+void vtkHashQueueDecimation::FillOutput(
+  vtkPolyData* mesh, const HashQueueDecimationResult& result, vtkPolyData* output)
+{
+  const Record& record = result.record;
+  const vtkIdType nodes = record.baseNodeCount;
+  const vtkIdType triangles = record.baseCellCount;
+  this->NumberOfInputNodes += record.nodeCount;
+  this->NumberOfInputTriangles += record.cellCount;
+  this->NumberOfNodes += nodes;
+  this->NumberOfTriangles += triangles;
+  this->Error = std::max(this->Error, result.error);
+  this->Private->addReason(toString(result.stopReason));
+
+  // The executive has put the input's field data there, with the record of an earlier decimation.
+  output->GetFieldData()->Initialize();
+  passFieldData(mesh->GetFieldData(), output->GetFieldData());
+  fillPoints(record, mesh, output);
+  fillCells(result, mesh, output);
+  if (this->OriginalPointIds)
+  {
+    output->GetPointData()->AddArray(originalPointIds(record));
+  }
+  const bool asked =
+    this->TargetReduction < 1.0 || this->TargetNodes > 0 || this->TargetTriangles > 0;
+  if (asked && result.stopReason == StopReason::NoRemovableNode)
+  {
+    vtkWarningMacro(
+      "Fewer nodes were removed than asked, for no further node can be removed without "
+      "flipping a triangle or breaking the surface: "
+      << nodes << " of " << record.nodeCount << " nodes and " << triangles << " of "
+      << record.cellCount << " triangles are left." << describeKept(result));
+  }
+}
+
+void vtkHashQueueDecimation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "TargetReduction: " << this->TargetReduction << "\n";
+  os << indent << "TargetNodes: " << this->TargetNodes << "\n";
+  os << indent << "TargetTriangles: " << this->TargetTriangles << "\n";
+  os << indent << "MaximumError: " << this->MaximumError << "\n";
+  os << indent << "Criterion: " << this->Criterion << "\n";
+  os << indent << "Scalars:";
+  for (const std::string& name : this->Private->Scalars)
+  {
+    os << " " << name;
+  }
+  os << "\n";
+  os << indent << "ScalarWeight: " << this->ScalarWeight << "\n";
+  os << indent << "IntervalSpacing: " << this->IntervalSpacing << "\n";
+  os << indent << "IntervalNodes: " << this->IntervalNodes << "\n";
+  os << indent << "PreserveBoundary: " << (this->PreserveBoundary ? "On\n" : "Off\n");
+  os << indent << "Triangulate: " << (this->Triangulate ? "On\n" : "Off\n");
+  os << indent << "OriginalPointIds: " << (this->OriginalPointIds ? "On\n" : "Off\n");
+  os << indent << "NumberOfInputNodes: " << this->NumberOfInputNodes << "\n";
+  os << indent << "NumberOfInputTriangles: " << this->NumberOfInputTriangles << "\n";
+  os << indent << "NumberOfNodes: " << this->NumberOfNodes << "\n";
+  os << indent << "NumberOfTriangles: " << this->NumberOfTriangles << "\n";
+  os << indent << "Error: " << this->Error << "\n";
+  os << indent << "StopReason: " << this->Private->StopReason << "\n";
+}

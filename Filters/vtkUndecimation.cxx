@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "vtkUndecimation.h"
+
+#include "undecimateMesh.h"
+#include "undecimateRecordFields.h"
+
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <string>
+
+using namespace undecimate;
+using namespace undecimate::filters;
+
+vtkStandardNewMacro(vtkUndecimation);
+
+struct vtkUndecimation::Internals
+{
+  UndecimatedMeshCache Meshes;
+};
+
+vtkUndecimation::vtkUndecimation()
+  : Private(std::make_unique<Internals>())
+{
+}
+
+vtkUndecimation::~vtkUndecimation() = default;
+
+// Each execution starts with REQUEST_DATA_NOT_GENERATED, once for all blocks of a composite.
+int vtkUndecimation::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()))
+  {
+    this->Private->Meshes.startPass();
+    this->NumberOfNodes = 0;
+    this->NumberOfTriangles = 0;
+    this->Error = 0.0;
+  }
+  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+int vtkUndecimation::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  std::string problem;
+  try
+  {
+    if (input->GetNumberOfPoints() == 0 && input->GetNumberOfCells() == 0)
+    {
+      output->ShallowCopy(input);
+      return 1;
+    }
+    if (UndecimatedMesh* mesh = this->Private->Meshes.find(input, problem))
+    {
+      const Undecimation& cursor = mesh->cursor();
+      mesh->show(input,
+        this->LevelBy == BY_NODES ? cursor.stepsForLevel(this->Level)
+                                  : cursor.stepsForError(this->MaximumError),
+        output);
+      output->GetFieldData()->Initialize();
+      passFieldData(input->GetFieldData(), output->GetFieldData());
+      if (this->OriginalPointIds)
+      {
+        output->GetPointData()->AddArray(mesh->originalPointIds());
+      }
+      this->NumberOfNodes += cursor.nodeCount();
+      this->NumberOfTriangles += cursor.cellCount();
+      this->Error = std::max(this->Error, cursor.error());
+      return 1;
+    }
+  }
+  catch (const std::bad_alloc&)
+  {
+    problem = "Not enough memory to undecimate a mesh of " +
+      std::to_string(input->GetNumberOfPoints()) + " points at its coarsest level.";
+  }
+  catch (const std::exception& failure)
+  {
+    problem = std::string("The undecimation failed: ") + failure.what();
+  }
+  vtkErrorMacro(<< problem);
+  output->Initialize();
+  return 0;
+}
+
+void vtkUndecimation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Level: " << this->Level << "\n";
+  os << indent << "LevelBy: " << (this->LevelBy == BY_NODES ? "Nodes\n" : "Error\n");
+  os << indent << "MaximumError: " << this->MaximumError << "\n";
+  os << indent << "OriginalPointIds: " << (this->OriginalPointIds ? "On\n" : "Off\n");
+  os << indent << "NumberOfNodes: " << this->NumberOfNodes << "\n";
+  os << indent << "NumberOfTriangles: " << this->NumberOfTriangles << "\n";
+  os << indent << "Error: " << this->Error << "\n";
+}
