@@ -16,13 +16,13 @@ if (UNDECIMATE_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif ()
 
-# undecimate_compile_options(<target>): warnings, and floating-point results that do not depend on
+# undecimate_compile_options(<target> [option...]): warnings, and floating-point results that do not depend on
 # the compiler's choice of fused multiply-adds.
 function (undecimate_compile_options target)
   if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     target_compile_options(${target} PRIVATE
-      -Wall -Wextra -Wpedantic
+      -Wall -Wextra
       -ffp-contract=off -fno-math-errno -fno-trapping-math
-      $<$<BOOL:${UNDECIMATE_WERROR}>:-Werror>)
+      $<$<BOOL:${UNDECIMATE_WERROR}>:-Werror> ${ARGN})
   endif ()
 endfunction ()
