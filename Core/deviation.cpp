@@ -806,7 +806,7 @@ bool DeviationCriterion::retriangulate(
 }
 
 void DeviationCriterion::removed(
-  const Hole& hole, const HoleTriangulation& filling, const unsigned char* order)
+  const Hole& hole, const HoleTriangulation& filling)
 {
   Internals& in = *this->internals_;
   for (int i = 0; i < hole.triangleCount; ++i)
@@ -819,7 +819,7 @@ void DeviationCriterion::removed(
     const Index node = s < 0 ? hole.node : in.sampleNodes[s];
     const Index slot = filling.count == 0
       ? triangleOf(hole.outer[0])
-      : triangleOf(hole.corners[order[in.assignment[s + 1]]]);
+      : triangleOf(hole.corners[in.assignment[s + 1]]);
     Index& first = in.topology.triangle(slot).first;
     in.next[node] = first;
     first = node;

@@ -53,7 +53,7 @@ public:
   bool retriangulate(Index node, Hole& hole, HoleTriangulation& filling, double& cost);
 
   /// Take note of a removal (of the node and filling of the last retriangulate()).
-  void removed(const Hole& hole, const HoleTriangulation& filling, const unsigned char* order);
+  void removed(const Hole& hole, const HoleTriangulation& filling);
 
 private:
   struct Internals;

@@ -28,7 +28,12 @@ EarCutting::EarCutting(const Vector* ring, int size, const Vector& normal)
   }
   for (int i = 0; i < size; ++i)
   {
-    this->quality_[i] = this->earQuality(i);
+    this->quality_[i] = this->shape(i);
+    this->convex_ = this->convex_ && this->quality_[i] > 0.0;
+  }
+  for (int i = 0; i < size; ++i)
+  {
+    this->quality_[i] = this->earQuality(i, this->quality_[i]);
   }
 }
 
@@ -56,12 +61,16 @@ double EarCutting::shape(int i) const
   return edges > 0.0 ? orientation(a, b, c) / edges : 0.0;
 }
 
-double EarCutting::earQuality(int i) const
+double EarCutting::earQuality(int i, double shape) const
 {
-  const double shape = this->shape(i);
   if (!(shape > kFlat))
   {
     return kNotAnEar;
+  }
+  // What is left of a convex polygon is convex, and no corner lies in an ear.
+  if (this->convex_)
+  {
+    return shape;
   }
   const Point& a = this->points_[this->previous_[i]];
   const Point& b = this->points_[i];
@@ -101,8 +110,8 @@ void EarCutting::take(int ear)
   this->previous_[next] = previous;
   this->anyLeft_ = previous;
   --this->left_;
-  this->quality_[previous] = this->earQuality(previous);
-  this->quality_[next] = this->earQuality(next);
+  this->quality_[previous] = this->earQuality(previous, this->shape(previous));
+  this->quality_[next] = this->earQuality(next, this->shape(next));
 }
 
 } // namespace undecimate

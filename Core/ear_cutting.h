@@ -100,7 +100,7 @@ private:
   };
 
   double shape(int i) const;
-  double earQuality(int i) const;
+  double earQuality(int i, double shape) const;
   int bestEar() const;
   void take(int ear);
   void emit(int i, HoleTriangulation& filling) const
@@ -115,6 +115,7 @@ private:
   std::array<int, kCapacity> next_;
   int left_;
   int anyLeft_ = 0;
+  bool convex_ = true;
 };
 
 } // namespace undecimate

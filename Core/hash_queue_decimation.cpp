@@ -179,7 +179,7 @@ public:
       // Step 7: back to step 2.
     }
     result.error = builder.error();
-    result.record = builder.finish(this->topology_.nodes().data(), result.baseTriangles);
+    result.record = builder.finish(this->topology_.cells().data(), result.baseTriangles);
     return this->monitor_.update(1.0) ? Status::Ok : Status::Cancelled;
   }
 
@@ -234,16 +234,19 @@ private:
     const HoleTriangulation& filling = this->filling_;
     for (int i = 0; i < hole.triangleCount; ++i)
     {
-      this->order_[i] = static_cast<unsigned char>(i);
       this->slots_[i] = triangleOf(hole.corners[i]);
-      const auto& nodes = this->topology_.triangle(this->slots_[i]).nodes;
-      std::copy(nodes.begin(), nodes.end(), this->oldCells_.begin() + 3 * i);
+      const int corner = cornerOf(hole.corners[i]);
+      unsigned char* cell = this->oldCells_.data() + 3 * i;
+      cell[corner] = 0;
+      cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
+      cell[previousCorner(corner)] =
+        static_cast<unsigned char>(i + 1 == hole.size ? 1 : i + 2);
     }
     for (int i = 0; i < filling.count; ++i)
     {
       for (int c = 0; c < 3; ++c)
       {
-        this->newCells_[3 * i + c] = hole.ring[filling.triangles[i][c]];
+        this->newCells_[3 * i + c] = static_cast<unsigned char>(filling.triangles[i][c] + 1);
       }
     }
     if (this->options_.trackCellSources)
@@ -252,6 +255,8 @@ private:
     }
     RecordBuilder::Step step;
     step.node = hole.node;
+    step.ring = hole.ring.data();
+    step.ringSize = hole.size;
     step.oldCount = hole.triangleCount;
     step.newCount = filling.count;
     step.slots = this->slots_.data();
@@ -261,8 +266,8 @@ private:
     step.error =
       this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * cost : cost;
     builder.append(step);
-    this->topology_.replace(hole, filling, this->order_.data());
-    this->criterion_.removed(hole, filling, this->order_.data());
+    this->topology_.replace(hole, filling);
+    this->criterion_.removed(hole, filling);
     this->trianglesLeft_ -= hole.triangleCount - filling.count;
     --this->nodesLeft_;
   }
@@ -302,11 +307,10 @@ private:
   Index nodesLeft_;
   Hole hole_;
   HoleTriangulation filling_;
-  std::array<unsigned char, kMaximumPatchCells> order_;
   std::array<unsigned char, kMaximumPatchCells> sources_;
   std::array<Index, kMaximumPatchCells> slots_;
-  std::array<Index, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
-  std::array<Index, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
+  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
+  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
 };
 
 Outcome checkArrays(const HashQueueDecimationOptions& options)

@@ -137,7 +137,7 @@ bool MeanEdgeCriterion::retriangulate(
 }
 
 void MeanEdgeCriterion::removed(
-  const Hole& hole, const HoleTriangulation& filling, const unsigned char* /*order*/)
+  const Hole& hole, const HoleTriangulation& filling)
 {
   for (int i = 0; i < hole.size; ++i)
   {

@@ -45,7 +45,7 @@ public:
   bool retriangulate(Index node, Hole& hole, HoleTriangulation& filling, double& cost);
 
   /// Take note of a removal.
-  void removed(const Hole& hole, const HoleTriangulation& filling, const unsigned char* order);
+  void removed(const Hole& hole, const HoleTriangulation& filling);
 
 private:
   static constexpr double kUnit = 1 << 30;

@@ -343,24 +343,7 @@ struct RecordBuilder::Internals
   // Shapes by content. The keys point into blocks that never move.
   std::unordered_map<std::string, Index> shapeNumbers;
   std::string scratch;
-  // Local number of a node in the current step: a small direct-mapped table would need n entries,
-  // and patches are small, so a linear search over the patch's nodes is faster.
-  std::array<Index, kMaximumLocals> locals;
-  int localCount = 0;
   float largestError = 0.0F;
-
-  int local(Index node)
-  {
-    for (int i = 0; i < this->localCount; ++i)
-    {
-      if (this->locals[i] == node)
-      {
-        return i;
-      }
-    }
-    this->locals[this->localCount] = node;
-    return this->localCount++;
-  }
 };
 
 RecordBuilder::RecordBuilder(Index nodeCount, Index cellCount, bool trackSources)
@@ -397,28 +380,36 @@ void RecordBuilder::append(const Step& step)
   Internals& in = *this->internals_;
   Record& record = in.record;
 
-  in.locals[0] = step.node;
-  in.localCount = 1;
-  std::string& shape = in.scratch;
-  shape.clear();
-  shape.push_back(static_cast<char>(step.oldCount));
-  shape.push_back(static_cast<char>(step.newCount));
-  shape.push_back(0);
   // Numbering by first appearance in the new cells makes equal patches equal shapes, and leaves the
   // nodes that no new cell has with the last numbers.
-  shape.resize(3 + kCorners * (step.oldCount + step.newCount));
+  std::array<unsigned char, kMaximumPatchCells + 2> local; // of a position in the ring; 0 = none yet
+  std::array<Index, kMaximumPatchCells + 2> extraNodes;
+  std::fill_n(local.begin(), step.ringSize + 1, static_cast<unsigned char>(0));
+  unsigned char locals = 0;
+  std::string& shape = in.scratch;
+  const int corners = kCorners * (step.oldCount + step.newCount);
+  shape.resize(3 + corners);
   char* oldLocals = &shape[3];
   char* newLocals = oldLocals + kCorners * step.oldCount;
   for (int i = 0; i < kCorners * step.newCount; ++i)
   {
-    newLocals[i] = static_cast<char>(in.local(step.newCells[i]));
+    unsigned char& number = local[step.newCells[i]];
+    number = number != 0 ? number : ++locals;
+    newLocals[i] = static_cast<char>(number);
   }
-  const int known = in.localCount;
+  int extra = 0;
   for (int i = 0; i < kCorners * step.oldCount; ++i)
   {
-    oldLocals[i] = static_cast<char>(in.local(step.oldCells[i]));
+    const int position = step.oldCells[i];
+    if (position != 0 && local[position] == 0)
+    {
+      local[position] = ++locals;
+      extraNodes[extra++] = step.ring[position - 1];
+    }
+    oldLocals[i] = static_cast<char>(position == 0 ? 0 : local[position]);
   }
-  const int extra = in.localCount - known;
+  shape[0] = static_cast<char>(step.oldCount);
+  shape[1] = static_cast<char>(step.newCount);
   shape[2] = static_cast<char>(extra);
 
   if (record.hasSources)
@@ -456,8 +447,7 @@ void RecordBuilder::append(const Step& step)
   in.largestError = std::max(in.largestError, static_cast<float>(step.error));
   record.stepErrors.push_back(in.largestError);
   record.patches.insert(record.patches.end(), step.slots, step.slots + step.newCount);
-  record.patches.insert(
-    record.patches.end(), in.locals.begin() + known, in.locals.begin() + known + extra);
+  record.patches.insert(record.patches.end(), extraNodes.begin(), extraNodes.begin() + extra);
   in.removedNodes.push_back(step.node);
   in.freedSlots.insert(
     in.freedSlots.end(), step.slots + step.newCount, step.slots + step.oldCount);

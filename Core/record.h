@@ -119,17 +119,20 @@ public:
   RecordBuilder(Index nodeCount, Index cellCount, bool trackSources);
   ~RecordBuilder();
 
-  /// One step. Triangles are given by their corners in original node numbers.
+  /// One step. Cells are given by the positions of their corners in the ring of the node: 0 is the
+  /// node itself, i + 1 the node ring[i].
   struct Step
   {
-    Index node = kNone;               ///< the removed node
-    int oldCount = 0;                 ///< 1 .. kMaximumPatchCells
-    int newCount = 0;                 ///< < oldCount
-    const Index* slots = nullptr;     ///< oldCount slots; the new cells take the first newCount
-    const Index* oldCells = nullptr;  ///< 3 * oldCount corners, as they stand in the slots
-    const Index* newCells = nullptr;  ///< 3 * newCount corners
-    const unsigned char* sources = nullptr; ///< newCount: old cell whose values the new one takes
-    double error = 0.0;               ///< of this step; the record keeps the maximum so far
+    Index node = kNone;                      ///< the removed node
+    const Index* ring = nullptr;             ///< ringSize nodes of the patch, original numbers
+    int ringSize = 0;                        ///< at most kMaximumPatchCells + 1
+    int oldCount = 0;                        ///< 1 .. kMaximumPatchCells
+    int newCount = 0;                        ///< < oldCount
+    const Index* slots = nullptr;            ///< oldCount; the new cells take the first newCount
+    const unsigned char* oldCells = nullptr; ///< 3 * oldCount, as the corners stand in the slots
+    const unsigned char* newCells = nullptr; ///< 3 * newCount
+    const unsigned char* sources = nullptr;  ///< newCount, if tracked: old cell whose values it takes
+    double error = 0.0;                      ///< of this step; the record keeps the largest so far
   };
   void append(const Step& step);
 

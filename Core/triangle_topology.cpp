@@ -10,8 +10,7 @@ namespace undecimate
 
 TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount)
   : triangles_(triangleCount)
-  , cornerAt_(nodeCount, kNoCorner)
-  , kinds_(nodeCount, NodeKind::Unused)
+  , nodes_(nodeCount)
 {
   for (Index t = 0; t < triangleCount; ++t)
   {
@@ -29,7 +28,7 @@ TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, 
 void TriangleTopology::connect()
 {
   const Index triangleCount = static_cast<Index>(this->triangles_.size());
-  const std::size_t nodeCount = this->kinds_.size();
+  const std::size_t nodeCount = this->nodes_.size();
   std::vector<Index> begin(nodeCount + 1, 0);
   const auto smaller = [](const Triangle& t, int c) {
     return std::min(t.nodes[nextCorner(c)], t.nodes[previousCorner(c)]);
@@ -80,6 +79,7 @@ void TriangleTopology::connect()
         ++end;
       }
       const auto count = end - edge;
+      this->meet(static_cast<Index>(node), edge->larger);
       const auto startOf = [this](Corner corner) {
         const Triangle& t = this->triangles_[triangleOf(corner)];
         return t.nodes[nextCorner(cornerOf(corner))];
@@ -93,8 +93,8 @@ void TriangleTopology::connect()
       }
       else if (count >= 2)
       {
-        this->kinds_[node] = NodeKind::NonManifold;
-        this->kinds_[edge->larger] = NodeKind::NonManifold;
+        this->nodes_[node].kind = NodeKind::NonManifold;
+        this->nodes_[edge->larger].kind = NodeKind::NonManifold;
       }
       edge = end;
     }
@@ -107,7 +107,7 @@ void TriangleTopology::markDegenerate()
   const auto mark = [this](const Triangle& t) {
     for (const Index node : t.nodes)
     {
-      this->kinds_[node] = NodeKind::Degenerate;
+      this->nodes_[node].kind = NodeKind::Degenerate;
     }
   };
   for (const Triangle& t : this->triangles_)
@@ -133,7 +133,7 @@ void TriangleTopology::markDegenerate()
 
 void TriangleTopology::markNodes()
 {
-  const std::size_t nodeCount = this->kinds_.size();
+  const std::size_t nodeCount = this->nodes_.size();
   std::vector<Index> uses(nodeCount, 0);
   std::vector<unsigned char> open(nodeCount, 0); // fans' ends: boundary edges that leave the node
   for (Index i = 0; i < static_cast<Index>(this->triangles_.size()); ++i)
@@ -149,21 +149,21 @@ void TriangleTopology::markNodes()
       {
         ++open[node];
       }
-      if (start || this->cornerAt_[node] == kNoCorner)
+      if (start || this->nodes_[node].corner == kNoCorner)
       {
-        this->cornerAt_[node] = makeCorner(i, c);
+        this->nodes_[node].corner = makeCorner(i, c);
       }
     }
   }
   for (std::size_t node = 0; node < nodeCount; ++node)
   {
-    if (uses[node] == 0 || this->kinds_[node] != NodeKind::Unused)
+    if (uses[node] == 0 || this->nodes_[node].kind != NodeKind::Unused)
     {
       continue;
     }
     // One fan must take in all triangles of the node, else surfaces just touch there.
     Index count = 0;
-    const Corner start = this->cornerAt_[node];
+    const Corner start = this->nodes_[node].corner;
     Corner corner = start;
     do
     {
@@ -174,7 +174,7 @@ void TriangleTopology::markNodes()
         ? kNoCorner
         : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
     } while (corner != kNoCorner && corner != start && count <= uses[node]);
-    this->kinds_[node] = count != uses[node] ? NodeKind::NonManifold
+    this->nodes_[node].kind = count != uses[node] ? NodeKind::NonManifold
       : open[node] == 0                      ? NodeKind::Interior
                                              : NodeKind::Boundary;
   }
@@ -182,8 +182,8 @@ void TriangleTopology::markNodes()
 
 bool TriangleTopology::gather(Index node, Hole& hole) const
 {
-  Corner corner = this->cornerAt_[node];
-  if (this->kinds_[node] == NodeKind::Boundary)
+  Corner corner = this->nodes_[node].corner;
+  if (this->nodes_[node].kind == NodeKind::Boundary)
   {
     // Back to the first triangle of the fan.
     for (;;)
@@ -234,7 +234,7 @@ bool TriangleTopology::gather(Index node, Hole& hole) const
 // Whether a manifold node shares an edge with another one.
 bool TriangleTopology::haveEdge(Index a, Index b) const
 {
-  const Corner start = this->cornerAt_[a];
+  const Corner start = this->nodes_[a].corner;
   Corner corner = start;
   for (;;)
   {
@@ -274,7 +274,7 @@ bool TriangleTopology::haveEdge(Index a, Index b) const
   }
 }
 
-bool TriangleTopology::mayHaveEdge(Index a, Index b) const
+bool TriangleTopology::findEdge(Index a, Index b) const
 {
   if (this->isManifold(a))
   {
@@ -314,9 +314,9 @@ bool TriangleTopology::fillsExistingTriangle(const Hole& hole) const
 }
 
 void TriangleTopology::replace(
-  const Hole& hole, const HoleTriangulation& filling, const unsigned char* order)
+  const Hole& hole, const HoleTriangulation& filling)
 {
-  const auto slot = [&](int i) { return triangleOf(hole.corners[order[i]]); };
+  const auto slot = [&](int i) { return triangleOf(hole.corners[i]); };
   const auto link = [this](Corner a, Corner b) {
     this->triangles_[triangleOf(a)].across[cornerOf(a)] = b;
     if (b != kNoCorner)
@@ -329,9 +329,9 @@ void TriangleTopology::replace(
     // A boundary node with one triangle: the triangle behind it gets a boundary edge.
     const Corner outer = hole.outer[0];
     this->triangles_[triangleOf(outer)].across[cornerOf(outer)] = kNoCorner;
-    this->cornerAt_[hole.ring[0]] =
+    this->nodes_[hole.ring[0]].corner =
       makeCorner(triangleOf(outer), previousCorner(cornerOf(outer)));
-    this->cornerAt_[hole.ring[1]] = makeCorner(triangleOf(outer), nextCorner(cornerOf(outer)));
+    this->nodes_[hole.ring[1]].corner = makeCorner(triangleOf(outer), nextCorner(cornerOf(outer)));
   }
   // Diagonals waiting for their other side: at most size - 3.
   struct Waiting
@@ -350,7 +350,7 @@ void TriangleTopology::replace(
     for (int c = 0; c < 3; ++c)
     {
       t.nodes[c] = hole.ring[filling.triangles[i][c]];
-      this->cornerAt_[t.nodes[c]] = makeCorner(s, c);
+      this->nodes_[t.nodes[c]].corner = makeCorner(s, c);
     }
   }
   for (int i = 0; i < filling.count; ++i)
@@ -363,7 +363,12 @@ void TriangleTopology::replace(
       const Corner here = makeCorner(s, c);
       if (to == from + 1 || (from == last && to == 0))
       {
-        link(here, hole.boundary && from == last ? kNoCorner : hole.outer[from]);
+        const bool closing = hole.boundary && from == last;
+        link(here, closing ? kNoCorner : hole.outer[from]);
+        if (closing)
+        {
+          this->meet(hole.ring[from], hole.ring[to]);
+        }
         continue;
       }
       int w = 0;
@@ -379,13 +384,14 @@ void TriangleTopology::replace(
       else
       {
         waiting[waitingCount++] = { from, to, here };
+        this->meet(hole.ring[from], hole.ring[to]);
       }
     }
   }
-  this->kinds_[hole.node] = NodeKind::Removed;
+  this->nodes_[hole.node].kind = NodeKind::Removed;
 }
 
-std::vector<Index> TriangleTopology::nodes() const
+std::vector<Index> TriangleTopology::cells() const
 {
   std::vector<Index> nodes(3 * this->triangles_.size());
   Index* out = nodes.data();

@@ -79,7 +79,7 @@ enum class NodeKind : unsigned char
 ///
 /// Edges between manifold nodes have one or two triangles; an edge of more than two, or between
 /// misoriented triangles, is open for all of them and its nodes are NonManifold.
-/// Memory: 32 bytes a triangle and 5 bytes a node. Construction O(nodes + triangles).
+/// Memory: 32 bytes a triangle and 16 bytes a node. Construction O(nodes + triangles).
 class TriangleTopology
 {
 public:
@@ -97,31 +97,55 @@ public:
   Index triangleCount() const { return static_cast<Index>(this->triangles_.size()); }
   Triangle& triangle(Index t) { return this->triangles_[t]; }
   const Triangle& triangle(Index t) const { return this->triangles_[t]; }
-  NodeKind kind(Index node) const { return this->kinds_[node]; }
+  NodeKind kind(Index node) const { return this->nodes_[node].kind; }
 
   /// One fan, closed or open: only such nodes can be removed.
-  bool isManifold(Index node) const { return this->kinds_[node] <= NodeKind::Boundary; }
+  bool isManifold(Index node) const { return this->nodes_[node].kind <= NodeKind::Boundary; }
 
   /// Gather the ring of a manifold node.
   /// @return false if it has more than kMaximumPatchCells triangles
   bool gather(Index node, Hole& hole) const;
 
   /// Whether two nodes share an edge, or, if neither is manifold, it cannot be ruled out.
-  /// O(triangles around a manifold one).
-  bool mayHaveEdge(Index a, Index b) const;
+  /// O(1) for most pairs without an edge, else O(triangles around a manifold one).
+  bool mayHaveEdge(Index a, Index b) const
+  {
+    return (this->nodes_[a].neighbours & signature(b)) != 0 &&
+      (this->nodes_[b].neighbours & signature(a)) != 0 && this->findEdge(a, b);
+  }
 
   /// Whether a hole can be closed at all, whatever the triangulation: it has a polygon, the new
   /// boundary edge does not exist, and a hole of three nodes would not repeat a triangle.
   bool isClosable(const Hole& hole) const;
 
   /// Put a triangulation in the place of the hole's triangles: new triangle i takes the slot of old
-  /// triangle order[i]. The slots order[count..] are free afterwards.
-  void replace(const Hole& hole, const HoleTriangulation& filling, const unsigned char* order);
+  /// triangle i. The other slots are free afterwards.
+  void replace(const Hole& hole, const HoleTriangulation& filling);
 
-  /// Nodes of all slots as they stand (3 a slot), for RecordBuilder::finish().
-  std::vector<Index> nodes() const;
+  /// Corners of all slots as they stand (3 a slot), for RecordBuilder::finish().
+  std::vector<Index> cells() const;
 
 private:
+  // All nodes that ever shared an edge with a node, as bits: most pairs without an edge are told by
+  // them at once.
+  static std::uint64_t signature(Index node)
+  {
+    return std::uint64_t{ 1 } << (static_cast<std::uint32_t>(node) * 2654435769U >> 26);
+  }
+  void meet(Index a, Index b)
+  {
+    this->nodes_[a].neighbours |= signature(b);
+    this->nodes_[b].neighbours |= signature(a);
+  }
+
+  struct Node
+  {
+    std::uint64_t neighbours = 0;
+    Corner corner = kNoCorner; // of one of its triangles
+    NodeKind kind = NodeKind::Unused;
+  };
+
+  bool findEdge(Index a, Index b) const;
   bool haveEdge(Index a, Index b) const;
   bool fillsExistingTriangle(const Hole& hole) const;
   void connect();
@@ -129,8 +153,7 @@ private:
   void markNodes();
 
   std::vector<Triangle> triangles_;
-  std::vector<Corner> cornerAt_;
-  std::vector<NodeKind> kinds_;
+  std::vector<Node> nodes_;
 };
 
 } // namespace undecimate
