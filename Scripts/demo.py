@@ -119,21 +119,21 @@ def main(plugin, folder):
     back = differences(output(undecimation)[0], levels[-1][0])
 
     comparison = measure.Comparison(for_measuring(original))
-    print("  nodes           triangles  .vtp bytes  Hausdorff  stress error       CPU time\n"
-          "                                       distance   largest  mean")
+    print("  level     nodes  triangles  .vtp bytes   Hausdorff     stress error        CPU time\n"
+          "                                           distance   largest     mean")
     for mesh, row in levels:
         errors = comparison.errors(for_measuring(mesh))
         row.update(hausdorff=errors.hausdorff / diagonal, stress_max=errors.largest / (high - low),
                    stress_mean=errors.mean / (high - low))
         how = "decimation" if row["percent"] == min(PERCENT) else "undecimation"
-        print(f"{row['percent']:5g} %  {row['nodes']:7,}  {row['triangles']:9,}  {row['bytes']:10,}"
-              f"  {row['hausdorff']:8.4%}  {row['stress_max']:7.2%}  {row['stress_mean']:6.3%}"
-              f"  {row['seconds']:7.3f} s {how}")
+        print(f"{row['percent']:5g} %  {row['nodes']:8,}  {row['triangles']:9,}  {row['bytes']:10,}  "
+              f"{100 * row['hausdorff']:8.4f} %  {100 * row['stress_max']:6.2f} %  "
+              f"{100 * row['stress_mean']:6.3f} %  {row['seconds']:6.3f} s {how}")
     print(f"""
 Hausdorff distance: two-sided, measured by samples, % of the bounding box's diagonal ({diagonal:.1f} mm).
 Stress error: against the original, between the nodes too, % of the range; at nodes it is zero.
 Time: {min(PERCENT):g} % is the decimation of the original; each other level is the undecimation from the one
-below it in the table. All come from one file, the {min(PERCENT):g} % mesh with its record: {progressive_bytes:,} bytes.
+below it in the table. All come from one file of {progressive_bytes:,} bytes: the {min(PERCENT):g} % mesh with its record.
 """)
 
     names = ["percent", "nodes", "triangles", "bytes", "hausdorff", "stress_max", "stress_mean",
@@ -148,12 +148,12 @@ below it in the table. All come from one file, the {min(PERCENT):g} % mesh with 
     for mesh, row in levels:
         title = f"{row['percent']:g} % of the nodes"
         counts = f"{row['nodes']:,} nodes, {row['triangles']:,} triangles"
-        note = counts + ", the original" if row["percent"] == 100 else (
-            f"{counts}, stress error at most {row['stress_max']:.1%}, "
-            f"on average {row['stress_mean']:.2%} of the range")
         captions.append((mesh, title, counts))
+        loss = "the original" if row["percent"] == 100 else (
+            f"error at most {100 * row['stress_max']:.2f} %, "
+            f"on average {100 * row['stress_mean']:.3f} % of the range")
         pictures.draw_level(os.path.join(folder, f"plate_hole_{row['percent']:g}.png"), mesh, title,
-                            note, STRESS, "von Mises stress", "MPa", (low, high), box)
+                            (counts, "von Mises stress: " + loss), STRESS, "MPa", (low, high), box)
     pictures.draw_overview(os.path.join(folder, "plate_hole.png"), captions, STRESS, "MPa",
                            (low, high), box)
 

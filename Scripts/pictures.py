@@ -6,13 +6,12 @@ All of them share one camera, one colour map and one range. Needs a display (xvf
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (
-    vtkActor, vtkActor2D, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextMapper,
-    vtkWindowToImageFilter)
+    vtkActor, vtkActor2D, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextMapper)
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the OpenGL back end)
 
@@ -47,12 +46,16 @@ FINE = 2  # drawn this many times larger, then averaged: thin lines stay even
 class Sheet:
     """One window with meshes, words and a scalar bar at given places (pixels, from the lower left)."""
 
+    window = None  # one for all sheets: shaders are compiled once
+
     def __init__(self, width, height):
         self.size = width, height
-        self.window = vtkRenderWindow()
-        self.window.SetOffScreenRendering(1)
-        self.window.SetMultiSamples(0)
+        if not Sheet.window:
+            Sheet.window = vtkRenderWindow()
+            self.window.SetOffScreenRendering(1)
+            self.window.SetMultiSamples(0)
         self.window.SetSize(FINE * width, FINE * height)
+        self.window.GetRenderers().RemoveAllItems()
         self.paper = vtkRenderer()
         self.paper.SetBackground(*PAPER)
         self.window.AddRenderer(self.paper)
@@ -146,37 +149,34 @@ class Sheet:
 
     def write(self, path):
         self.window.Render()
-        grab = vtkWindowToImageFilter()
-        grab.SetInput(self.window)
-        grab.ReadFrontBufferOff()
-        grab.ShouldRerenderOff()
-        grab.Update()
         width, height = self.size
-        pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
-        pixels = pixels.reshape(height, FINE, width, FINE, 3).mean((1, 3)) + 0.5
+        grabbed = vtkUnsignedCharArray()
+        self.window.GetPixelData(0, 0, FINE * width - 1, FINE * height - 1, 0, grabbed, 0)
+        fine = vtk_to_numpy(grabbed).reshape(FINE * height, FINE * width, 3).astype(np.uint16)
+        pixels = sum(fine[i::FINE, j::FINE] for i in range(FINE) for j in range(FINE))
+        pixels = ((pixels + FINE * FINE // 2) // (FINE * FINE)).astype(np.uint8)
         image = vtkImageData()
         image.SetDimensions(width, height, 1)
-        image.GetPointData().SetScalars(
-            numpy_to_vtk(pixels.astype(np.uint8).reshape(-1, 3), deep=1))
+        image.GetPointData().SetScalars(numpy_to_vtk(pixels.reshape(-1, 3), deep=1))
         writer = vtkPNGWriter()
         writer.SetFileName(path)
-        writer.SetCompressionLevel(9)
+        writer.SetCompressionLevel(6)
         writer.SetInputData(image)
         writer.Write()
         if writer.GetErrorCode():
             raise OSError("cannot write " + path)
 
 
-def draw_level(path, mesh, title, note, array, label, unit, limits, box):
-    """One level: the mesh with its edges, the result beside it, a scalar bar."""
-    sheet = Sheet(1500, 800)
+def draw_level(path, mesh, title, notes, array, unit, limits, box):
+    """One level: the mesh with its edges, the result beside it, a scalar bar; a note above each."""
+    sheet = Sheet(1250, 690)
     colours = colour_map(*limits)
-    sheet.words(title, 30, 748, 28, bold=True)
-    sheet.words(note, 30, 716, 18, grey=True)
-    sheet.words(label, 720, 716, 18, grey=True)
-    sheet.mesh(mesh, box, (30, 25, 670, 670))
-    sheet.mesh(mesh, box, (720, 25, 670, 670), array, colours)
-    sheet.scalar_bar(colours, unit, (1405, 25, 85, 670), 18)
+    sheet.words(title, 25, 645, 24, bold=True)
+    for i, note in enumerate(notes):
+        x = 25 + 580 * i
+        sheet.words(note, x, 614, 16, grey=True)
+        sheet.mesh(mesh, box, (x, 25, 565, 565), array if i else None, colours)
+    sheet.scalar_bar(colours, unit, (1175, 25, 70, 565), 16)
     sheet.write(path)
 
 
