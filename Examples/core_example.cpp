@@ -42,7 +42,8 @@ int main()
   }
 
   Undecimation cursor;
-  if (const Outcome outcome = cursor.open(result.record.view(), result.baseTriangles.data()); !outcome)
+  if (const Outcome outcome = cursor.open(result.record.view(), result.baseTriangles.data());
+      !outcome)
   {
     std::fprintf(stderr, "%s\n", outcome.message.c_str());
     return 1;
