@@ -79,7 +79,7 @@ void findCellSources(const MeshPoints& points, const Hole& hole, const HoleTrian
   {
     ring[i] = points[hole.ring[i]] - center;
   }
-  Vector normal;
+  Vector normal{ 0.0, 0.0, 0.0 };
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     normal = normal + cross(ring[i], ring[i + 1 == hole.size ? 0 : i + 1]);

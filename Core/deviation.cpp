@@ -17,6 +17,7 @@ namespace undecimate
 namespace
 {
 
+constexpr Vector kOrigin{ 0.0, 0.0, 0.0 };
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // A new triangle may not turn away from the old one on the same ring edge by more than this.
@@ -241,7 +242,7 @@ bool DeviationCriterion::Internals::prepare(const Hole& hole)
     square = std::max(square, dot(this->ring[i], this->ring[i]));
   }
   this->radius = std::sqrt(square);
-  this->normal = Vector();
+  this->normal = kOrigin;
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     this->oldNormals[i] = cross(this->ring[i], this->ring[i + 1 == hole.size ? 0 : i + 1]);
@@ -255,7 +256,7 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
   const Vector center = this->points[hole.node];
   this->samples.clear();
   this->sampleNodes.clear();
-  this->samples.add(Vector());
+  this->samples.add(kOrigin);
   for (int i = 0; i < hole.size; ++i)
   {
     this->samples.add(0.5 * this->ring[i]);
@@ -318,7 +319,7 @@ void DeviationCriterion::Internals::boundarySquare(const Hole& hole)
     this->fixedSquare = std::max(
       this->fixedSquare, squaredDistanceToSegment(p, this->ring[last], this->ring[0]));
   };
-  measure(Vector());
+  measure(kOrigin);
   for (const Index edge : { hole.node, hole.ring[last] })
   {
     for (Index node = this->boundaryFirst[edge]; node != kNone; node = this->boundaryNext[node])
@@ -393,7 +394,7 @@ void DeviationCriterion::Internals::probe(const Hole& hole, const std::vector<Tr
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     DistanceTriangle old;
-    if (old.set(Vector(), this->ring[i], this->ring[i + 1 == hole.size ? 0 : i + 1]))
+    if (old.set(kOrigin, this->ring[i], this->ring[i + 1 == hole.size ? 0 : i + 1]))
     {
       old.lowerSquaredDistances(rows, this->probeSquares.data());
     }

@@ -46,6 +46,8 @@ public:
     std::vector<unsigned char>& kept);
   ~DeviationCriterion();
 
+  void prefetch(Index /*node*/) const {}
+
   /// Cost of the best triangulation; false if there is none.
   bool evaluate(Index node, double& cost);
 

@@ -28,7 +28,7 @@ EarCutting::EarCutting(const Vector* ring, int size, const Vector& normal)
   }
   for (int i = 0; i < size; ++i)
   {
-    this->quality_[i] = this->shape(i);
+    this->quality_[i] = this->height(i);
     this->convex_ = this->convex_ && this->quality_[i] > 0.0;
   }
   for (int i = 0; i < size; ++i)
@@ -51,26 +51,27 @@ double squaredLength(const Point& a, const Point& b)
 }
 } // namespace
 
-// Twice the area over the sum of the squared edges: scale-free, negative for a reflex corner.
-double EarCutting::shape(int i) const
+// Height of the ear over its base, the edge that would be new, in units of the base; negative for a
+// reflex corner. The larger, the shorter the new edge and the less the angle it cuts off.
+double EarCutting::height(int i) const
 {
   const Point& a = this->points_[this->previous_[i]];
   const Point& b = this->points_[i];
   const Point& c = this->points_[this->next_[i]];
-  const double edges = squaredLength(a, b) + squaredLength(b, c) + squaredLength(c, a);
-  return edges > 0.0 ? orientation(a, b, c) / edges : 0.0;
+  const double base = squaredLength(a, c);
+  return base > 0.0 ? orientation(a, b, c) / base : 0.0;
 }
 
-double EarCutting::earQuality(int i, double shape) const
+double EarCutting::earQuality(int i, double height) const
 {
-  if (!(shape > kFlat))
+  if (!(height > kFlat))
   {
     return kNotAnEar;
   }
   // What is left of a convex polygon is convex, and no corner lies in an ear.
   if (this->convex_)
   {
-    return shape;
+    return height;
   }
   const Point& a = this->points_[this->previous_[i]];
   const Point& b = this->points_[i];
@@ -83,7 +84,7 @@ double EarCutting::earQuality(int i, double shape) const
       return kNotAnEar;
     }
   }
-  return shape;
+  return height;
 }
 
 int EarCutting::bestEar() const
@@ -110,8 +111,8 @@ void EarCutting::take(int ear)
   this->previous_[next] = previous;
   this->anyLeft_ = previous;
   --this->left_;
-  this->quality_[previous] = this->earQuality(previous, this->shape(previous));
-  this->quality_[next] = this->earQuality(next, this->shape(next));
+  this->quality_[previous] = this->earQuality(previous, this->height(previous));
+  this->quality_[next] = this->earQuality(next, this->height(next));
 }
 
 } // namespace undecimate

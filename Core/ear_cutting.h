@@ -20,9 +20,10 @@ namespace undecimate
 
 struct Vector
 {
-  double x = 0.0;
-  double y = 0.0;
-  double z = 0.0;
+  // Not initialized: arrays of them are filled by their owners, and often only in part.
+  double x;
+  double y;
+  double z;
 };
 
 inline Vector operator-(const Vector& a, const Vector& b)
@@ -79,7 +80,7 @@ public:
       this->take(ear);
     }
     const int last = this->anyLeft_;
-    if (!(this->shape(last) > kFlat))
+    if (!(this->height(last) > kFlat))
     {
       return false;
     }
@@ -90,8 +91,8 @@ public:
 private:
   static constexpr int kCapacity = kMaximumPatchCells + 1;
   static constexpr double kNotAnEar = -1.0;
-  // Shape below which a triangle counts as degenerate (an equilateral one has 0.29).
-  static constexpr double kFlat = 1e-6;
+  // Height over base below which an ear counts as degenerate (an equilateral one has 0.87).
+  static constexpr double kFlat = 1e-5;
 
   struct Point
   {
@@ -99,8 +100,8 @@ private:
     double y;
   };
 
-  double shape(int i) const;
-  double earQuality(int i, double shape) const;
+  double height(int i) const;
+  double earQuality(int i, double height) const;
   int bestEar() const;
   void take(int ear);
   void emit(int i, HoleTriangulation& filling) const

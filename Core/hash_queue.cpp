@@ -68,7 +68,6 @@ Index logarithmicInterval(float value)
 
 HashQueue::HashQueue(Index nodeCount, Index intervalCount)
   : links_(nodeCount)
-  , interval_(nodeCount, kNone)
   , ends_(std::max<Index>(1, intervalCount), Ends{ kNone, kNone })
   , intervalCount_(std::max<Index>(1, intervalCount))
 {
@@ -111,13 +110,9 @@ void HashQueue::unmark(Index interval)
 
 void HashQueue::insert(Index node, Index interval)
 {
-  if (this->interval_[node] != kNone)
-  {
-    this->remove(node);
-  }
-  this->interval_[node] = interval;
+  this->remove(node);
   Ends& ends = this->ends_[interval];
-  this->links_[node] = { kNone, ends.last };
+  this->links_[node] = { kNone, ends.last, interval };
   if (ends.last == kNone)
   {
     ends.first = node;
@@ -133,19 +128,18 @@ void HashQueue::insert(Index node, Index interval)
 
 void HashQueue::remove(Index node)
 {
-  const Index interval = this->interval_[node];
-  if (interval == kNone)
+  const Links links = this->links_[node];
+  if (links.interval == kNone)
   {
     return;
   }
-  this->interval_[node] = kNone;
-  Ends& ends = this->ends_[interval];
-  const Links links = this->links_[node];
+  this->links_[node].interval = kNone;
+  Ends& ends = this->ends_[links.interval];
   (links.previous == kNone ? ends.first : this->links_[links.previous].next) = links.next;
   (links.next == kNone ? ends.last : this->links_[links.next].previous) = links.previous;
   if (ends.first == kNone)
   {
-    this->unmark(interval);
+    this->unmark(links.interval);
   }
   --this->size_;
 }

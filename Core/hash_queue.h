@@ -76,10 +76,10 @@ public:
   /// Nodes in the queue.
   Index size() const { return this->size_; }
   bool empty() const { return this->size_ == 0; }
-  bool contains(Index node) const { return this->interval_[node] != kNone; }
+  bool contains(Index node) const { return this->links_[node].interval != kNone; }
 
   /// Interval of a node, kNone if it is not in the queue.
-  Index interval(Index node) const { return this->interval_[node]; }
+  Index interval(Index node) const { return this->links_[node].interval; }
 
   /// Put a node at the end of an interval; if it is in the queue already it leaves its place.
   void insert(Index node, Index interval);
@@ -93,6 +93,11 @@ public:
   /// First node of the lowest non-empty interval, kNone if empty; it stays in.
   Index front() const;
 
+  /// The node behind another one in its interval, kNone if it is the last.
+  Index after(Index node) const { return this->links_[node].next; }
+
+  void prefetch(Index node) const { __builtin_prefetch(&this->links_[node]); }
+
   /// front(), taken out.
   Index pop();
 
@@ -102,8 +107,9 @@ private:
 
   struct Links
   {
-    Index next;
-    Index previous;
+    Index next = kNone;
+    Index previous = kNone;
+    Index interval = kNone;
   };
   struct Ends
   {
@@ -111,7 +117,6 @@ private:
     Index last;
   };
   std::vector<Links> links_;
-  std::vector<Index> interval_;
   std::vector<Ends> ends_;
   std::vector<std::uint64_t> bits_[4]; // bits_[0]: a bit an interval; above: a bit a non-zero word
   Index intervalCount_;

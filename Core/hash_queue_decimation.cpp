@@ -155,6 +155,7 @@ public:
         }
         break;
       }
+      this->prefetch(queue);
       // Steps 3 to 5: remove it with its triangles and triangulate the hole. A node that cannot go
       // now waits outside the queue until a neighbour goes.
       double cost = 0.0;
@@ -226,6 +227,31 @@ private:
     const double gone = this->topology_.triangleCount() - this->trianglesLeft_;
     return this->monitor_.update(
       std::min(0.99, kEvaluationShare + (1.0 - kEvaluationShare) * gone / planned));
+  }
+
+  // The next nodes are known, and waiting for memory would take most of the time.
+  void prefetch(const HashQueue& queue) const
+  {
+    const Index first = queue.front();
+    const Index second = first == kNone ? kNone : queue.after(first);
+    const Index third = second == kNone ? kNone : queue.after(second);
+    if (third != kNone)
+    {
+      queue.prefetch(third);
+      this->topology_.prefetchNode(third);
+    }
+    if (second != kNone)
+    {
+      this->topology_.prefetchTriangle(second);
+    }
+    if (first != kNone)
+    {
+      this->topology_.prefetchRing(first, [&](Index node) {
+        this->points_.prefetch(node);
+        this->criterion_.prefetch(node);
+        queue.prefetch(node);
+      });
+    }
   }
 
   void remove(RecordBuilder& builder, double cost)

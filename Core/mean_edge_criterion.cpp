@@ -110,7 +110,7 @@ bool MeanEdgeCriterion::retriangulate(
     ring[i] = this->points_[hole.ring[i]] - center;
   }
   std::array<Vector, kMaximumPatchCells> normals;
-  Vector normal;
+  Vector normal{ 0.0, 0.0, 0.0 };
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     normals[i] = cross(ring[i], ring[i + 1 == hole.size ? 0 : i + 1]);

@@ -40,6 +40,8 @@ public:
     return true;
   }
 
+  void prefetch(Index node) const { __builtin_prefetch(&this->nodes_[node]); }
+
   /// Fill the hole of a node by ear cutting; false if that is not possible without flipping a
   /// triangle or making an edge or a triangle that exists.
   bool retriangulate(Index node, Hole& hole, HoleTriangulation& filling, double& cost);

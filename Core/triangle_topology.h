@@ -102,6 +102,36 @@ public:
   /// One fan, closed or open: only such nodes can be removed.
   bool isManifold(Index node) const { return this->nodes_[node].kind <= NodeKind::Boundary; }
 
+  /// Bring the data around a node that will be gathered soon into the cache, in three stages that
+  /// each use what the one before has brought: the node, its triangle, the triangles beside that.
+  void prefetchNode(Index node) const { __builtin_prefetch(&this->nodes_[node]); }
+  void prefetchTriangle(Index node) const
+  {
+    const Corner corner = this->nodes_[node].corner;
+    if (corner != kNoCorner)
+    {
+      __builtin_prefetch(&this->triangles_[triangleOf(corner)]);
+    }
+  }
+  template <typename Visit>
+  void prefetchRing(Index node, Visit&& visitNode) const
+  {
+    const Corner corner = this->nodes_[node].corner;
+    if (corner != kNoCorner)
+    {
+      const Triangle& t = this->triangles_[triangleOf(corner)];
+      for (int c = 0; c < 3; ++c)
+      {
+        __builtin_prefetch(&this->nodes_[t.nodes[c]]);
+        visitNode(t.nodes[c]);
+        if (t.across[c] != kNoCorner)
+        {
+          __builtin_prefetch(&this->triangles_[triangleOf(t.across[c])]);
+        }
+      }
+    }
+  }
+
   /// Gather the ring of a manifold node.
   /// @return false if it has more than kMaximumPatchCells triangles
   bool gather(Index node, Hole& hole) const;
