@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Bytes a node of the core's calls, counted in operator new: the same on every machine.
+//
+//   memory_test [grid size]
+//
+// Prints what Documentation/memory.md states and fails when a bound there is broken.
+
+#include "hash_queue_decimation.h"
+#include "undecimation.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace
+{
+std::size_t liveBytes = 0;
+std::size_t peakBytes = 0;
+constexpr std::size_t kHeader = alignof(std::max_align_t);
+}
+
+void* operator new(std::size_t size)
+{
+  void* block = std::malloc(size + kHeader);
+  if (!block)
+  {
+    throw std::bad_alloc();
+  }
+  *static_cast<std::size_t*>(block) = size;
+  liveBytes += size;
+  peakBytes = liveBytes > peakBytes ? liveBytes : peakBytes;
+  return static_cast<char*>(block) + kHeader;
+}
+
+void operator delete(void* memory) noexcept
+{
+  if (memory)
+  {
+    void* block = static_cast<char*>(memory) - kHeader;
+    liveBytes -= *static_cast<std::size_t*>(block);
+    std::free(block);
+  }
+}
+
+void operator delete(void* memory, std::size_t) noexcept
+{
+  operator delete(memory);
+}
+
+namespace
+{
+using namespace undecimate;
+
+struct Grid
+{
+  std::vector<float> points;
+  std::vector<float> values;
+  std::vector<Index> triangles;
+  TriangleMeshView view;
+
+  explicit Grid(Index n)
+  {
+    for (Index i = 0; i < n * n; ++i)
+    {
+      const float x = static_cast<float>(i % n) / static_cast<float>(n - 1);
+      const float y = static_cast<float>(i / n) / static_cast<float>(n - 1);
+      const float z = std::sin(6 * x) * std::cos(4 * y) + 0.3F * std::sin(15 * x * y);
+      this->points.insert(this->points.end(), { x, y, 0.1F * z });
+      this->values.push_back(std::exp(-8 * ((x - 0.4F) * (x - 0.4F) + (y - 0.6F) * (y - 0.6F))));
+      if (i % n < n - 1 && i / n < n - 1)
+      {
+        this->triangles.insert(this->triangles.end(), { i, i + 1, i + n + 1, i, i + n + 1, i + n });
+      }
+    }
+    this->view.pointsFloat = this->points.data();
+    this->view.nodeCount = n * n;
+    this->view.triangles = this->triangles.data();
+    this->view.triangleCount = static_cast<std::int64_t>(this->triangles.size()) / 3;
+  }
+};
+
+int faults = 0;
+
+void check(const char* what, double bytes, double bound)
+{
+  const bool good = bytes <= bound;
+  std::printf("  %-44s %7.1f, at most %5.0f%s\n", what, bytes, bound, good ? "" : "  TOO MUCH");
+  faults += !good;
+}
+
+void measure(
+  const Grid& grid, const char* name, Criterion criterion, bool sources, double peakBound)
+{
+  HashQueueDecimationOptions options;
+  options.criterion = criterion;
+  options.targetReduction = 0.99;
+  options.trackCellSources = sources;
+  NodalArrayView array;
+  array.values = grid.values.data();
+  options.arrays = { array };
+
+  const double nodes = static_cast<double>(grid.view.nodeCount);
+  const std::size_t before = liveBytes;
+  peakBytes = liveBytes;
+  Monitor monitor;
+  HashQueueDecimationResult result;
+  if (const Outcome outcome = decimate(grid.view, options, monitor, result); !outcome)
+  {
+    std::printf("%s\n", outcome.message.c_str());
+    ++faults;
+    return;
+  }
+  std::printf("%s%s, %.0f nodes to %d\n", name, sources ? ", with sources of cell data" : "", nodes,
+    result.record.baseNodeCount);
+  check("decimation, largest, a node", static_cast<double>(peakBytes - before) / nodes, peakBound);
+  const double removed = nodes - result.record.baseNodeCount;
+  check("record, a removed node", static_cast<double>(result.record.byteSize()) / removed,
+    sources ? 56 : 42);
+
+  const std::size_t beforeCursor = liveBytes;
+  peakBytes = liveBytes;
+  Undecimation cursor;
+  if (!cursor.open(result.record.view(), result.baseTriangles.data()))
+  {
+    ++faults;
+  }
+  cursor.moveTo(cursor.stepCount());
+  check("cursor, a node (two triangles)", static_cast<double>(liveBytes - beforeCursor) / nodes,
+    sources ? 33 : 25);
+  check("opening it, largest, a node", static_cast<double>(peakBytes - beforeCursor) / nodes,
+    sources ? 34 : 26);
+}
+}
+
+int main(int argc, char* argv[])
+{
+  const Grid grid(argc > 1 ? std::atoi(argv[1]) : 200);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, false, 250);
+  measure(grid, "Deviation", Criterion::Deviation, false, 250);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, true, 280);
+  return faults == 0 ? 0 : 1;
+}
