@@ -19,9 +19,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <new>
-#include <numeric>
 #include <type_traits>
 
 namespace undecimate
@@ -118,10 +116,22 @@ void scatterBlock(
     });
 }
 
-// to[places[i]] = from[numbers[i]], for arrays that only VTK knows how to copy. A null list stands
-// for 0, 1, 2, ...
-void copyTuples(vtkAbstractArray* to, const Index* places, vtkAbstractArray* from,
-  const Index* numbers, vtkIdType count, vtkIdType firstNumber = 0)
+// Tuples of one array for places of another: numbers first, first + 1, ..., or first + numbers[i].
+struct Tuples
+{
+  vtkIdType first = 0;
+  const Index* numbers = nullptr;
+
+  vtkIdType operator[](vtkIdType i) const
+  {
+    return this->first + (this->numbers ? this->numbers[i] : i);
+  }
+};
+
+// For arrays that only VTK knows how to copy. With lists of numbers, for the InsertTuples() that
+// takes ranges writes structures of arrays to wrong places (VTK 9.2).
+void copyTuples(
+  vtkAbstractArray* to, Tuples places, vtkAbstractArray* from, Tuples numbers, vtkIdType count)
 {
   if (count == 0)
   {
@@ -135,8 +145,8 @@ void copyTuples(vtkAbstractArray* to, const Index* places, vtkAbstractArray* fro
   vtkIdType* fromId = fromIds->GetPointer(0);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    toId[i] = places ? places[i] : i;
-    fromId[i] = firstNumber + (numbers ? numbers[i] : i);
+    toId[i] = places[i];
+    fromId[i] = numbers[i];
   }
   to->InsertTuples(toIds, fromIds, from);
 }
@@ -337,13 +347,8 @@ ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType le
     gatherBlock(bytes(to) + size * leading, bytes(from) + size * leading, size, numbers, count);
     return to;
   }
-  copyTuples(to, nullptr, from, nullptr, leading);
-  if (count > 0)
-  {
-    std::vector<Index> places(count);
-    std::iota(places.begin(), places.end(), static_cast<Index>(leading));
-    copyTuples(to, places.data(), from, numbers, count, leading);
-  }
+  copyTuples(to, {}, from, {}, leading);
+  copyTuples(to, { leading }, from, { leading, numbers }, count);
   return to;
 }
 
@@ -361,11 +366,8 @@ ArrayPointer join(
     }
     return to;
   }
-  to->InsertTuples(0, baseCount, 0, base);
-  if (restCount > 0)
-  {
-    to->InsertTuples(baseCount, restCount, 0, rest);
-  }
+  copyTuples(to, {}, base, {}, baseCount);
+  copyTuples(to, { baseCount }, rest, {}, restCount);
   return to;
 }
 
@@ -383,11 +385,8 @@ ArrayPointer scatter(vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArr
     }
     return to;
   }
-  copyTuples(to, order, base, nullptr, baseCount);
-  if (restCount > 0)
-  {
-    copyTuples(to, order + baseCount, rest, nullptr, restCount);
-  }
+  copyTuples(to, { 0, order }, base, {}, baseCount);
+  copyTuples(to, { 0, order + baseCount }, rest, {}, restCount);
   return to;
 }
 

@@ -118,17 +118,17 @@ vtkSmartPointer<vtkCellArray> cutFaces(
 std::string OtherFaces::describe() const
 {
   std::vector<std::string> parts;
-  const auto add = [&parts](vtkIdType number, const char* word)
+  const auto add = [&parts](vtkIdType number, const char* word, const char* rest)
   {
     if (number > 0)
     {
-      parts.push_back(counted(number, word));
+      parts.push_back(counted(number, word) + rest);
     }
   };
-  add(this->quads, "quad");
-  add(this->polygons, "polygon");
-  add(this->strips, "triangle strip");
-  add(this->slivers, "face of fewer than three point");
+  add(this->quads, "quad", "");
+  add(this->polygons, "polygon", "");
+  add(this->strips, "triangle strip", "");
+  add(this->slivers, "face", " of fewer than three points");
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i)
   {

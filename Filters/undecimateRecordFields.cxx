@@ -65,29 +65,6 @@ std::int64_t cellsFingerprint(vtkPolyData* mesh)
   return signedBits(print.value());
 }
 
-// A hash of the header (without itself) and the arrays, by name.
-std::int64_t checksum(const std::int64_t* header, vtkFieldData* fields)
-{
-  Fingerprint print;
-  print.add(header, kChecksum * sizeof(header[0]));
-  std::set<std::string> names;
-  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
-  {
-    const char* name = fields->GetAbstractArray(i)->GetName();
-    if (isRecordArray(name) && fields->GetAbstractArray(i)->GetNumberOfValues() > 0)
-    {
-      names.insert(name);
-    }
-  }
-  names.erase(kPrefix + "Header");
-  for (const std::string& name : names)
-  {
-    print.add(name);
-    print.add(signedBits(fingerprint(fields->GetAbstractArray(name.c_str()))));
-  }
-  return signedBits(print.value());
-}
-
 // The vector becomes a field data array; its memory is freed.
 template <class ArrayType, class Value>
 void write(vtkFieldData* fields, const char* name, std::vector<Value>& values)
@@ -297,7 +274,7 @@ std::string readHeader(vtkPolyData* mesh, std::int64_t* header)
       std::to_string(found->GetNumberOfValues()) + " values");
   }
   std::copy_n(values, static_cast<int>(kHeaderSize), header);
-  if (checksum(header, fields) != header[kChecksum])
+  if (recordChecksum(header, fields) != header[kChecksum])
   {
     return damaged("the checksum of its arrays is wrong");
   }
@@ -510,6 +487,28 @@ void passFieldData(vtkFieldData* from, vtkFieldData* to)
   }
 }
 
+std::int64_t recordChecksum(const std::int64_t* header, vtkFieldData* fields)
+{
+  Fingerprint print;
+  print.add(header, kChecksum * sizeof(header[0]));
+  std::set<std::string> names;
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    const char* name = fields->GetAbstractArray(i)->GetName();
+    if (isRecordArray(name) && fields->GetAbstractArray(i)->GetNumberOfValues() > 0)
+    {
+      names.insert(name);
+    }
+  }
+  names.erase(kPrefix + "Header");
+  for (const std::string& name : names)
+  {
+    print.add(name);
+    print.add(signedBits(fingerprint(fields->GetAbstractArray(name.c_str()))));
+  }
+  return signedBits(print.value());
+}
+
 void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse,
   bool hasOriginalPointIds)
 {
@@ -556,7 +555,7 @@ void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyDa
   write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
   write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
   write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
-  header[kChecksum] = checksum(header.data(), fields);
+  header[kChecksum] = recordChecksum(header.data(), fields);
   write<vtkTypeInt64Array>(fields, "Header", header);
 }
 

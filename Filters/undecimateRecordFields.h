@@ -85,6 +85,9 @@ bool isRecordArray(const char* name);
 /// Add all arrays of `from` to `to` but those of a record.
 void passFieldData(vtkFieldData* from, vtkFieldData* to);
 
+/// Hash of a header (up to kChecksum) and of the record's other arrays, by name.
+std::int64_t recordChecksum(const std::int64_t* header, vtkFieldData* fields);
+
 /// Add the record to the field data of the coarse mesh.
 /// @param result of the decimation; its arrays are freed as they are written
 /// @param mesh the input of the decimation

@@ -6,6 +6,7 @@
 #include "undecimateArrays.h"
 #include "undecimateCompatibility.h"
 #include "undecimateInput.h"
+#include "undecimatePass.h"
 #include "undecimateRecordFields.h"
 
 #include "hash_queue_decimation.h"
@@ -14,7 +15,6 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkDemandDrivenPipeline.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -151,6 +151,7 @@ std::string describeKept(const HashQueueDecimationResult& result)
 
 struct vtkHashQueueDecimation::Internals
 {
+  PipelinePass Pass;
   std::vector<std::string> Scalars;
   std::vector<std::string> Reasons; // one of each kind
   std::string StopReason;
@@ -169,6 +170,7 @@ struct vtkHashQueueDecimation::Internals
 vtkHashQueueDecimation::vtkHashQueueDecimation()
   : Private(std::make_unique<Internals>())
 {
+  this->Private->Pass.watch(this);
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -209,11 +211,10 @@ const char* vtkHashQueueDecimation::GetStopReason()
   return this->Private->StopReason.c_str();
 }
 
-// Each execution starts with REQUEST_DATA_NOT_GENERATED, once for all blocks of a composite.
 int vtkHashQueueDecimation::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()))
+  if (this->Private->Pass.starts(request, inputVector[0]))
   {
     this->NumberOfInputNodes = 0;
     this->NumberOfInputTriangles = 0;

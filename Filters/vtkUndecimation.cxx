@@ -4,9 +4,9 @@
 #include "vtkUndecimation.h"
 
 #include "undecimateMesh.h"
+#include "undecimatePass.h"
 #include "undecimateRecordFields.h"
 
-#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -26,21 +26,22 @@ vtkStandardNewMacro(vtkUndecimation);
 
 struct vtkUndecimation::Internals
 {
+  PipelinePass Pass;
   UndecimatedMeshCache Meshes;
 };
 
 vtkUndecimation::vtkUndecimation()
   : Private(std::make_unique<Internals>())
 {
+  this->Private->Pass.watch(this);
 }
 
 vtkUndecimation::~vtkUndecimation() = default;
 
-// Each execution starts with REQUEST_DATA_NOT_GENERATED, once for all blocks of a composite.
 int vtkUndecimation::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()))
+  if (this->Private->Pass.starts(request, inputVector[0]))
   {
     this->Private->Meshes.startPass();
     this->NumberOfNodes = 0;

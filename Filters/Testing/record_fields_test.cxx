@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The record as field data: it survives files, and damage of any kind is refused and never a crash.
+
+#include "filterTesting.h"
+
+#include "undecimateRecordFields.h"
+#include "vtkUndecimation.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkStringArray.h"
+#include "vtkXMLPolyDataReader.h"
+#include "vtkXMLPolyDataWriter.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace filter_testing;
+using namespace undecimate::filters;
+
+namespace
+{
+
+vtkSmartPointer<vtkPolyData> smallRecord()
+{
+  MeshOptions options;
+  options.rows = 7;
+  options.vertsAndLines = true;
+  return decimated(makeGrid(options), 0.8);
+}
+
+std::int64_t* header(vtkPolyData* mesh)
+{
+  return static_cast<std::int64_t*>(
+    mesh->GetFieldData()->GetAbstractArray("Undecimation.Header")->GetVoidPointer(0));
+}
+
+void sign(vtkPolyData* mesh)
+{
+  header(mesh)[kChecksum] = recordChecksum(header(mesh), mesh->GetFieldData());
+}
+
+vtkSmartPointer<vtkPolyData> throughFile(vtkPolyData* mesh, int mode, int compressor, int idType)
+{
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(mesh);
+  writer->WriteToOutputStringOn();
+  writer->SetDataMode(mode);
+  writer->SetCompressorType(compressor);
+  writer->SetIdType(idType);
+  EXPECT_EQ(writer->Write(), 1);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(writer->GetOutputString());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+TEST(RecordFields, SurviveFilesOfAllModes)
+{
+  for (const int type : { VTK_FLOAT, VTK_DOUBLE })
+  {
+    MeshOptions options;
+    options.vertsAndLines = true;
+    options.pointType = type;
+    vtkSmartPointer<vtkPolyData> mesh = makeGrid(options);
+    vtkSmartPointer<vtkPolyData> coarse = decimated(mesh);
+    vtkSmartPointer<vtkPolyData> middle = undecimated(coarse, 0.4);
+    for (const int mode : { vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended })
+    {
+      for (const int compressor : { vtkXMLWriter::NONE, vtkXMLWriter::ZLIB, vtkXMLWriter::LZ4 })
+      {
+        vtkSmartPointer<vtkPolyData> loaded =
+          throughFile(coarse, mode, compressor, vtkXMLWriter::Int64);
+        EXPECT_EQ(differences(undecimated(loaded, 1.0), mesh, /*fileTypes=*/true), "")
+          << "mode " << mode << " compressor " << compressor;
+        EXPECT_EQ(differences(undecimated(loaded, 0.4), middle, /*fileTypes=*/true), "")
+          << "mode " << mode << " compressor " << compressor;
+      }
+    }
+  }
+}
+
+// Such a file stores arrays of vtkIdType in 32 bits, and they come back with another type.
+TEST(RecordFields, SurviveFilesWithShortIdsUnlessAnArrayIsCut)
+{
+  vtkSmartPointer<vtkPolyData> mesh = makeGrid();
+  const std::string error = undecimationError(
+    throughFile(decimated(mesh), vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, vtkXMLWriter::Int32));
+  EXPECT_NE(error.find("is damaged"), std::string::npos) << error;
+
+  mesh->GetPointData()->RemoveArray("ids");
+  vtkSmartPointer<vtkPolyData> loaded =
+    throughFile(decimated(mesh), vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, vtkXMLWriter::Int32);
+  EXPECT_EQ(differences(undecimated(loaded, 1.0), mesh, /*fileTypes=*/true), "");
+}
+
+TEST(RecordFields, AMeshThatWasChangedInAFileIsRefused)
+{
+  vtkSmartPointer<vtkPolyData> coarse = smallRecord();
+  coarse->GetPointData()->GetArray("scalar")->SetComponent(0, 0, 17.0);
+  const std::string error = undecimationError(
+    throughFile(coarse, vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, vtkXMLWriter::Int64));
+  EXPECT_NE(error.find("point array 'scalar'"), std::string::npos) << error;
+}
+
+TEST(RecordFields, ANewerVersionIsRefused)
+{
+  vtkSmartPointer<vtkPolyData> coarse = smallRecord();
+  header(coarse)[kVersion] = 2;
+  const std::string error = undecimationError(coarse);
+  EXPECT_NE(error.find("format version 2"), std::string::npos) << error;
+  EXPECT_NE(error.find("Update Undecimate"), std::string::npos) << error;
+}
+
+TEST(RecordFields, AVersionThatNeverWasIsRefused)
+{
+  for (const std::int64_t version : { 0, -3 })
+  {
+    vtkSmartPointer<vtkPolyData> coarse = smallRecord();
+    header(coarse)[kVersion] = version;
+    sign(coarse);
+    const std::string error = undecimationError(coarse);
+    EXPECT_NE(error.find("is damaged"), std::string::npos) << error;
+  }
+}
+
+TEST(RecordFields, AHeaderOfAnotherTypeOrLengthIsRefused)
+{
+  vtkSmartPointer<vtkPolyData> coarse = smallRecord();
+  vtkFieldData* fields = coarse->GetFieldData();
+  vtkSmartPointer<vtkAbstractArray> original = fields->GetAbstractArray("Undecimation.Header");
+  for (const int type : { VTK_DOUBLE, VTK_INT, VTK_STRING, VTK_BIT, VTK_LONG_LONG })
+  {
+    for (const int size : { 0, 1, kHeaderSize - 1, kHeaderSize + 1 })
+    {
+      auto other = vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(type));
+      other->SetName("Undecimation.Header");
+      other->SetNumberOfTuples(size);
+      for (int i = 0; i < size; ++i)
+      {
+        other->SetVariantValue(i, 1);
+      }
+      fields->AddArray(other);
+      const std::string error = undecimationError(coarse);
+      EXPECT_NE(error.find("is damaged"), std::string::npos) << error;
+    }
+  }
+  fields->AddArray(original);
+  undecimated(coarse, 0.5);
+}
+
+// A byte that flips is found by the checksum, wherever it is.
+TEST(RecordFields, AnyFlippedByteIsFound)
+{
+  vtkSmartPointer<vtkPolyData> original = smallRecord();
+  std::mt19937 random(3);
+  int arrays = 0;
+  for (int i = 0; i < original->GetFieldData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* found = original->GetFieldData()->GetArray(i);
+    if (!found || !isRecordArray(found->GetName()) || !found->HasStandardMemoryLayout() ||
+      found->GetDataType() == VTK_BIT)
+    {
+      continue;
+    }
+    ++arrays;
+    const std::size_t size =
+      static_cast<std::size_t>(found->GetDataTypeSize()) * found->GetNumberOfValues();
+    for (int flip = 0; flip < 8; ++flip)
+    {
+      vtkSmartPointer<vtkPolyData> coarse = copy(original);
+      auto* bytes =
+        static_cast<unsigned char*>(coarse->GetFieldData()->GetArray(i)->GetVoidPointer(0));
+      bytes[random() % size] ^= static_cast<unsigned char>(1u << (random() % 8));
+      const std::string error = undecimationError(coarse);
+      EXPECT_TRUE(error.find("is damaged") != std::string::npos ||
+        error.find("Update Undecimate") != std::string::npos)
+        << found->GetName() << ": " << error;
+    }
+  }
+  EXPECT_GT(arrays, 20);
+}
+
+// Run a record whose checksum was put right after the damage. It may only be refused or shown: a
+// crash or, under the sanitizers, a read outside the arrays fails the test.
+bool survives(vtkPolyData* coarse)
+{
+  Watched<vtkUndecimation> filter;
+  filter->SetInputData(coarse);
+  filter->OriginalPointIdsOn();
+  for (const double level : { 0.3, 1.0, 0.6, 0.0, 1.0 })
+  {
+    filter->SetLevel(level);
+    vtkPolyData* output = filter.output();
+    if (!filter.messages->errors.empty())
+    {
+      EXPECT_EQ(output->GetNumberOfPoints(), 0);
+      return false;
+    }
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType i = 0; i < output->GetNumberOfPolys(); ++i)
+    {
+      output->GetPolys()->GetCellAtId(i, ids);
+      for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
+      {
+        EXPECT_GE(ids->GetId(k), 0);
+        EXPECT_LT(ids->GetId(k), output->GetNumberOfPoints());
+      }
+    }
+  }
+  return true;
+}
+
+TEST(RecordFields, EveryHeaderEntryMayBeWrong)
+{
+  vtkSmartPointer<vtkPolyData> original = smallRecord();
+  EXPECT_TRUE(survives(original));
+  int refused = 0;
+  for (int field = 1; field < kHeaderSize; ++field)
+  {
+    const std::int64_t right = header(original)[field];
+    for (const std::int64_t wrong : { right + 1, right - 1, std::int64_t{ 0 }, std::int64_t{ -1 },
+           std::int64_t{ 1 } << 31, (std::int64_t{ 1 } << 31) - 1, INT64_MAX, INT64_MIN })
+    {
+      vtkSmartPointer<vtkPolyData> coarse = copy(original);
+      header(coarse)[field] = wrong;
+      if (field < kChecksum)
+      {
+        sign(coarse);
+      }
+      refused += !survives(coarse);
+    }
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST(RecordFields, SignedDamageNeverCrashes)
+{
+  vtkSmartPointer<vtkPolyData> original = smallRecord();
+  std::mt19937 random(11);
+  const std::vector<std::string> names = { "NodeOrder", "CellOrder", "StepShapes", "StepErrors",
+    "Patches", "ShapeOffsets", "Shapes", "BaseSources", "LostSources", "ArrayFingerprints" };
+  int refused = 0;
+  for (const std::string& name : names)
+  {
+    vtkDataArray* found = original->GetFieldData()->GetArray(("Undecimation." + name).c_str());
+    ASSERT_NE(found, nullptr) << name;
+    const std::size_t size =
+      static_cast<std::size_t>(found->GetDataTypeSize()) * found->GetNumberOfValues();
+    for (int round = 0; round < 60; ++round)
+    {
+      vtkSmartPointer<vtkPolyData> coarse = copy(original);
+      auto* bytes = static_cast<unsigned char*>(
+        coarse->GetFieldData()->GetArray(("Undecimation." + name).c_str())->GetVoidPointer(0));
+      for (unsigned flips = 1 + random() % 3; flips > 0; --flips)
+      {
+        bytes[random() % size] = static_cast<unsigned char>(random());
+      }
+      sign(coarse);
+      refused += !survives(coarse);
+    }
+  }
+  EXPECT_GT(refused, 200);
+}
+
+TEST(RecordFields, ArraysMayBeMissingOrOfAnotherKind)
+{
+  vtkSmartPointer<vtkPolyData> original = smallRecord();
+  for (int i = 0; i < original->GetFieldData()->GetNumberOfArrays(); ++i)
+  {
+    const std::string name = original->GetFieldData()->GetAbstractArray(i)->GetName();
+    if (!isRecordArray(name.c_str()) || name == "Undecimation.Header")
+    {
+      continue;
+    }
+    const vtkIdType tuples = original->GetFieldData()->GetAbstractArray(i)->GetNumberOfTuples();
+    const int type = original->GetFieldData()->GetAbstractArray(i)->GetDataType();
+    vtkSmartPointer<vtkPolyData> missing = copy(original);
+    missing->GetFieldData()->RemoveArray(name.c_str());
+    sign(missing);
+    EXPECT_FALSE(survives(missing)) << name;
+
+    vtkSmartPointer<vtkPolyData> shorter = copy(original);
+    shorter->GetFieldData()->GetAbstractArray(i)->Resize(tuples - 1);
+    sign(shorter);
+    EXPECT_FALSE(survives(shorter)) << name;
+
+    for (const int other : { VTK_DOUBLE, VTK_STRING, VTK_BIT, VTK_INT, VTK_FLOAT })
+    {
+      if (other == type)
+      {
+        continue;
+      }
+      auto array = vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(other));
+      array->SetName(name.c_str());
+      array->SetNumberOfTuples(tuples);
+      for (vtkIdType k = 0; k < tuples; ++k)
+      {
+        array->SetVariantValue(k, 0);
+      }
+      vtkSmartPointer<vtkPolyData> changed = copy(original);
+      changed->GetFieldData()->AddArray(array);
+      sign(changed);
+      EXPECT_FALSE(survives(changed)) << name;
+    }
+  }
+}
+
+} // namespace
