@@ -37,8 +37,7 @@ def write(path, points, triangles, name, values):
     writer.SetInputData(mesh)
     writer.SetCompressorTypeToZLib()
     writer.SetCompressionLevel(9)
-    writer.EncodeAppendedDataOff()
-    writer.SetIdTypeToInt32()
+    writer.SetDataModeToBinary()  # see README.md
     if not writer.Write():
         sys.exit("cannot write " + path)
     print(f"{path}: {len(points)} nodes, {len(triangles)} triangles, {os.path.getsize(path)} bytes")

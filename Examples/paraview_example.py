@@ -11,7 +11,8 @@ LoadPlugin(plugin, remote=False, ns=globals())
 
 decimation = HashQueueDecimation(
     Input=XMLPolyDataReader(FileName=[source]), TargetReduction=0.95, Scalars=[array])
-SaveData(target, proxy=decimation)  # the coarse mesh with its record: all levels in one file
+# The coarse mesh with its record: all levels in one file
+SaveData(target, proxy=decimation, DataMode="Binary", CompressorType="ZLib")
 
 undecimation = Undecimation(Input=XMLPolyDataReader(FileName=[target]))
 for level in (0.0, 0.5, 1.0):

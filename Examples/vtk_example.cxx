@@ -42,5 +42,6 @@ int main(int argc, char* argv[])
   vtkNew<vtkXMLPolyDataWriter> writer; // the coarse mesh with its record: all levels in one file
   writer->SetInputConnection(decimation->GetOutputPort());
   writer->SetFileName(argv[3]);
+  writer->SetDataModeToBinary(); // read by every version of VTK and expat
   return writer->Write() ? EXIT_SUCCESS : EXIT_FAILURE;
 }

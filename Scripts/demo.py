@@ -38,8 +38,8 @@ def output(proxy):
 
 def save(proxy, path):
     """Write a compressed .vtp file; its size."""
-    pv.SaveData(path, proxy=proxy, DataMode="Appended", EncodeAppendedData=0,
-                CompressorType="ZLib", CompressionLevel="5")
+    # Not DataMode Appended: see Data/README.md.
+    pv.SaveData(path, proxy=proxy, DataMode="Binary", CompressorType="ZLib", CompressionLevel="5")
     return os.path.getsize(path)
 
 
