@@ -7,6 +7,8 @@
 /// Source: [K03] section 1.3, after the classical algorithm of computational geometry (an ear is a
 /// triangle of three consecutive nodes of a polygon that contains no other node of it). Here in the
 /// plane of the mean normal of the hole's old triangles, and the best-shaped ear goes first.
+/// Orientation and containment are the same in every affine image of that plane, so the ring is
+/// projected along the normal onto a coordinate plane; lengths and areas are those of the true plane.
 
 #ifndef UNDECIMATE_CORE_EAR_CUTTING_H
 #define UNDECIMATE_CORE_EAR_CUTTING_H
@@ -56,7 +58,23 @@ public:
   /// @param normal of the plane, any length but 0
   EarCutting(const Vector* ring, int size, const Vector& normal);
 
-  /// Cut the polygon into size - 2 triangles.
+  /// Whether the first `count` of the triangles (origin, ring[i], ring[i + 1]) all lie upside up, so
+  /// that the plane shows a hole around the origin as it is.
+  bool seesFan(int count) const
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      const Point& a = this->points_[i];
+      const Point& b = this->points_[this->next_[i]];
+      if (!(a.x * b.y - a.y * b.x > 0.0))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Cut the polygon into size - 2 triangles. Once only.
   /// @param mayConnect bool(int i, int j): whether the ring nodes i and j may be connected
   /// @return false if no ear is left that may be cut; `filling` is then unspecified
   /// Complexity: O(size^2).
@@ -64,6 +82,10 @@ public:
   bool cut(MayConnect&& mayConnect, HoleTriangulation& filling)
   {
     filling.count = 0;
+    if (this->left_ > 3)
+    {
+      this->findEars();
+    }
     while (this->left_ > 3)
     {
       const int ear = this->bestEar();
@@ -100,20 +122,78 @@ private:
     double y;
   };
 
-  double height(int i) const;
-  double earQuality(int i, double height) const;
-  int bestEar() const;
-  void take(int ear);
+  static double orientation(const Point& a, const Point& b, const Point& c)
+  {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  }
+
+  // Height of the ear over its base, the edge that would be new, in units of the base; negative for a
+  // reflex corner. The larger, the shorter the new edge and the less the angle it cuts off.
+  double height(int i) const
+  {
+    const Point& a = this->points_[this->previous_[i]];
+    const Point& b = this->points_[i];
+    const Point& c = this->points_[this->next_[i]];
+    const double x = c.x - a.x;
+    const double y = c.y - a.y;
+    const double base = (this->xx_ * x + this->xy_ * y) * x + this->yy_ * y * y;
+    return base > 0.0 ? orientation(a, b, c) / base : 0.0;
+  }
+
+  // What is left of a convex polygon is convex, and no corner lies in an ear.
+  void evaluate(int i, double height)
+  {
+    this->quality_[i] = height > kFlat && (this->convex_ || this->isEmpty(i)) ? height : kNotAnEar;
+  }
+
+  int bestEar() const
+  {
+    int best = -1;
+    double quality = 0.0;
+    int i = this->anyLeft_;
+    for (int k = 0; k < this->left_; ++k, i = this->next_[i])
+    {
+      if (this->quality_[i] > quality)
+      {
+        quality = this->quality_[i];
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  void take(int ear)
+  {
+    const int previous = this->previous_[ear];
+    const int next = this->next_[ear];
+    this->next_[previous] = next;
+    this->previous_[next] = previous;
+    this->anyLeft_ = previous;
+    if (--this->left_ > 3)
+    {
+      this->evaluate(previous, this->height(previous));
+      this->evaluate(next, this->height(next));
+    }
+  }
+
   void emit(int i, HoleTriangulation& filling) const
   {
     filling.triangles[filling.count++] = { static_cast<unsigned char>(this->previous_[i]),
       static_cast<unsigned char>(i), static_cast<unsigned char>(this->next_[i]) };
   }
 
+  void findEars();
+  bool isEmpty(int i) const;
+
   std::array<Point, kCapacity> points_;
   std::array<double, kCapacity> quality_;
   std::array<int, kCapacity> previous_;
   std::array<int, kCapacity> next_;
+  // Squared length of (x, y) in the true plane, over the ratio of a true area to a projected one:
+  // xx x^2 + xy x y + yy y^2.
+  double xx_;
+  double xy_;
+  double yy_;
   int left_;
   int anyLeft_ = 0;
   bool convex_ = true;

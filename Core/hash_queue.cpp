@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace undecimate
 {
@@ -51,21 +50,6 @@ Index ExponentialIntervals::interval(double value) const
   return j <= 0.0 ? 0 : std::min(static_cast<Index>(j), this->count_ - 1);
 }
 
-Index logarithmicInterval(float value)
-{
-  if (value != value)
-  {
-    return kLogarithmicIntervals - 1;
-  }
-  if (!(value > 0.0F))
-  {
-    return 0;
-  }
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof(bits));
-  return static_cast<Index>(bits >> 16);
-}
-
 HashQueue::HashQueue(Index nodeCount, Index intervalCount)
   : links_(nodeCount)
   , ends_(std::max<Index>(1, intervalCount), Ends{ kNone, kNone })
@@ -108,61 +92,25 @@ void HashQueue::unmark(Index interval)
   }
 }
 
-void HashQueue::insert(Index node, Index interval)
+// The lowest non-empty interval above another one: up to the first level that has a bit behind it,
+// and down again.
+Index HashQueue::nextInterval(Index interval) const
 {
-  this->remove(node);
-  Ends& ends = this->ends_[interval];
-  this->links_[node] = { kNone, ends.last, interval };
-  if (ends.last == kNone)
+  for (int level = 0; level < 4; ++level, interval >>= 6)
   {
-    ends.first = node;
-    this->mark(interval);
+    const std::uint64_t behind = ~std::uint64_t{ 1 } << (interval & 63);
+    std::uint64_t word = this->bits_[level][interval >> 6] & behind;
+    if (word != 0)
+    {
+      interval = (interval & ~Index{ 63 }) + __builtin_ctzll(word);
+      while (level > 0)
+      {
+        interval = (interval << 6) + __builtin_ctzll(this->bits_[--level][interval]);
+      }
+      return interval;
+    }
   }
-  else
-  {
-    this->links_[ends.last].next = node;
-  }
-  ends.last = node;
-  ++this->size_;
-}
-
-void HashQueue::remove(Index node)
-{
-  const Links links = this->links_[node];
-  if (links.interval == kNone)
-  {
-    return;
-  }
-  this->links_[node].interval = kNone;
-  Ends& ends = this->ends_[links.interval];
-  (links.previous == kNone ? ends.first : this->links_[links.previous].next) = links.next;
-  (links.next == kNone ? ends.last : this->links_[links.next].previous) = links.previous;
-  if (ends.first == kNone)
-  {
-    this->unmark(links.interval);
-  }
-  --this->size_;
-}
-
-Index HashQueue::lowestInterval() const
-{
-  if (this->size_ == 0)
-  {
-    return kNone;
-  }
-  Index interval = 0;
-  for (int level = 3; level >= 0; --level)
-  {
-    const std::uint64_t word = this->bits_[level][interval];
-    interval = (interval << 6) + __builtin_ctzll(word);
-  }
-  return interval;
-}
-
-Index HashQueue::front() const
-{
-  const Index interval = this->lowestInterval();
-  return interval == kNone ? kNone : this->ends_[interval].first;
+  return kNone;
 }
 
 Index HashQueue::pop()

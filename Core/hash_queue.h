@@ -11,6 +11,7 @@
 
 #include "types.h"
 
+#include <cstring>
 #include <vector>
 
 namespace undecimate
@@ -96,6 +97,18 @@ public:
   /// The node behind another one in its interval, kNone if it is the last.
   Index after(Index node) const { return this->links_[node].next; }
 
+  /// The node that leaves behind another one if the queue stays as it is, kNone if there is none.
+  Index upcoming(Index node) const
+  {
+    const Links& links = this->links_[node];
+    if (links.next != kNone)
+    {
+      return links.next;
+    }
+    const Index interval = this->nextInterval(links.interval);
+    return interval == kNone ? kNone : this->ends_[interval].first;
+  }
+
   void prefetch(Index node) const { __builtin_prefetch(&this->links_[node]); }
 
   /// front(), taken out.
@@ -104,6 +117,7 @@ public:
 private:
   void mark(Index interval);
   void unmark(Index interval);
+  Index nextInterval(Index interval) const;
 
   struct Links
   {
@@ -127,7 +141,77 @@ private:
 constexpr Index kLogarithmicIntervals = 256 << 7;
 
 /// Interval of a value >= 0 with logarithmic spacing; negative values count as 0, NaN as the largest.
-Index logarithmicInterval(float value);
+inline Index logarithmicInterval(float value)
+{
+  if (value != value)
+  {
+    return kLogarithmicIntervals - 1;
+  }
+  if (!(value > 0.0F))
+  {
+    return 0;
+  }
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return static_cast<Index>(bits >> 16);
+}
+
+inline void HashQueue::insert(Index node, Index interval)
+{
+  this->remove(node);
+  Ends& ends = this->ends_[interval];
+  this->links_[node] = { kNone, ends.last, interval };
+  if (ends.last == kNone)
+  {
+    ends.first = node;
+    this->mark(interval);
+  }
+  else
+  {
+    this->links_[ends.last].next = node;
+  }
+  ends.last = node;
+  ++this->size_;
+}
+
+inline void HashQueue::remove(Index node)
+{
+  const Links links = this->links_[node];
+  if (links.interval == kNone)
+  {
+    return;
+  }
+  this->links_[node].interval = kNone;
+  Ends& ends = this->ends_[links.interval];
+  (links.previous == kNone ? ends.first : this->links_[links.previous].next) = links.next;
+  (links.next == kNone ? ends.last : this->links_[links.next].previous) = links.previous;
+  if (ends.first == kNone)
+  {
+    this->unmark(links.interval);
+  }
+  --this->size_;
+}
+
+inline Index HashQueue::lowestInterval() const
+{
+  if (this->size_ == 0)
+  {
+    return kNone;
+  }
+  Index interval = 0;
+  for (int level = 3; level >= 0; --level)
+  {
+    const std::uint64_t word = this->bits_[level][interval];
+    interval = (interval << 6) + __builtin_ctzll(word);
+  }
+  return interval;
+}
+
+inline Index HashQueue::front() const
+{
+  const Index interval = this->lowestInterval();
+  return interval == kNone ? kNone : this->ends_[interval].first;
+}
 
 } // namespace undecimate
 

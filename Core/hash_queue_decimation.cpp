@@ -10,6 +10,7 @@
 #include "triangle_topology.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -229,27 +230,36 @@ private:
       std::min(0.99, kEvaluationShare + (1.0 - kEvaluationShare) * gone / planned));
   }
 
-  // The next nodes are known, and waiting for memory would take most of the time.
+  // The next nodes are known, and waiting for their memory would take most of the time. Each stage
+  // uses what the ones before have brought.
   void prefetch(const HashQueue& queue) const
   {
-    const Index first = queue.front();
-    const Index second = first == kNone ? kNone : queue.after(first);
-    const Index third = second == kNone ? kNone : queue.after(second);
-    if (third != kNone)
+    std::array<Index, 5> next;
+    Index node = queue.front();
+    for (Index& n : next)
     {
-      queue.prefetch(third);
-      this->topology_.prefetchNode(third);
+      n = node;
+      node = node == kNone ? kNone : queue.upcoming(node);
     }
-    if (second != kNone)
+    if (next[4] != kNone)
     {
-      this->topology_.prefetchTriangle(second);
+      queue.prefetch(next[4]);
+      this->topology_.prefetchNode(next[4]);
     }
-    if (first != kNone)
+    if (next[3] != kNone)
     {
-      this->topology_.prefetchRing(first, [&](Index node) {
-        this->points_.prefetch(node);
-        this->criterion_.prefetch(node);
-        queue.prefetch(node);
+      this->topology_.prefetchTriangle(next[3]);
+    }
+    if (next[2] != kNone)
+    {
+      this->topology_.prefetchNeighbours(next[2]);
+    }
+    if (next[1] != kNone)
+    {
+      this->topology_.prefetchRing(next[1], [&](Index ringNode) {
+        this->points_.prefetch(ringNode);
+        this->criterion_.prefetch(ringNode);
+        queue.prefetch(ringNode);
       });
     }
   }

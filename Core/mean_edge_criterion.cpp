@@ -109,31 +109,29 @@ bool MeanEdgeCriterion::retriangulate(
   {
     ring[i] = this->points_[hole.ring[i]] - center;
   }
-  std::array<Vector, kMaximumPatchCells> normals;
   Vector normal{ 0.0, 0.0, 0.0 };
-  for (int i = 0; i < hole.triangleCount; ++i)
+  for (int i = 1; i < hole.size; ++i)
   {
-    normals[i] = cross(ring[i], ring[i + 1 == hole.size ? 0 : i + 1]);
-    normal = normal + normals[i];
+    normal = normal + cross(ring[i - 1], ring[i]);
   }
-  // In the plane of the mean normal no old triangle may lie upside down, else the hole is not the
-  // polygon that the plane shows.
-  for (int i = 0; i < hole.triangleCount; ++i)
+  if (!hole.boundary)
   {
-    if (!(dot(normals[i], normal) > 0.0))
-    {
-      return false;
-    }
+    normal = normal + cross(ring[hole.size - 1], ring[0]);
   }
   EarCutting ears(ring.data(), hole.size, normal);
+  // In the plane of the mean normal no old triangle may lie upside down, else the hole is not the
+  // polygon that the plane shows.
+  if (!ears.seesFan(hole.triangleCount))
+  {
+    return false;
+  }
   const int last = hole.size - 1;
-  const bool done = ears.cut(
+  return ears.cut(
     [&](int i, int j) {
       const bool closing = hole.boundary && (i + j == last && (i == 0 || j == 0));
       return closing || !this->topology_.mayHaveEdge(hole.ring[i], hole.ring[j]);
     },
     filling);
-  return done;
 }
 
 void MeanEdgeCriterion::removed(

@@ -7,8 +7,6 @@
 #include <array>
 #include <cstring>
 #include <string>
-#include <string_view>
-#include <unordered_map>
 
 namespace undecimate
 {
@@ -202,37 +200,34 @@ Outcome checkSources(const Index* sources, std::int64_t count, Index cellCount, 
   return {};
 }
 
-// The order that puts the survivors first, in their original order, and then the others in the
-// order in which they come back.
-std::vector<Index> recordOrder(Index count, const std::vector<Index>& comingBack)
+/// The order that puts the survivors first, in their original order, and then the others in the
+/// order in which they come back.
+struct RecordOrder
 {
-  std::vector<bool> gone(count, false);
-  for (const Index i : comingBack)
+  std::vector<Index> order;    // original number at each position
+  std::vector<Index> position; // and the other way round
+
+  RecordOrder(Index count, const std::vector<Index>& comingBack)
+    : order(count)
+    , position(count, kNone)
   {
-    gone[i] = true;
-  }
-  std::vector<Index> order;
-  order.reserve(count);
-  for (Index i = 0; i < count; ++i)
-  {
-    if (!gone[i])
+    Index next = count - static_cast<Index>(comingBack.size());
+    for (const Index i : comingBack)
     {
-      order.push_back(i);
+      this->order[next] = i;
+      this->position[i] = next++;
+    }
+    next = 0;
+    for (Index i = 0; i < count; ++i)
+    {
+      if (this->position[i] == kNone)
+      {
+        this->order[next] = i;
+        this->position[i] = next++;
+      }
     }
   }
-  order.insert(order.end(), comingBack.begin(), comingBack.end());
-  return order;
-}
-
-std::vector<Index> inverse(const std::vector<Index>& order)
-{
-  std::vector<Index> position(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-  {
-    position[order[i]] = static_cast<Index>(i);
-  }
-  return position;
-}
+};
 
 } // namespace
 
@@ -331,6 +326,92 @@ Outcome validateRecord(const RecordView& record, const Index* baseCells)
   return checkSteps(record);
 }
 
+namespace
+{
+
+/// Finds shapes by their content: open addressing with linear probing, at most half full.
+class ShapeTable
+{
+public:
+  // Room for the longest shape, in whole words.
+  static constexpr int kCapacity = (3 + (2 * kCorners + 1) * kMaximumPatchCells + 7) / 8 * 8;
+  using Shape = std::array<unsigned char, kCapacity>;
+
+  /// Number of a shape, which is added to the record if it is new.
+  /// @param size its bytes; those up to the next multiple of 8 must be 0
+  Index number(const Shape& shape, int size, Record& record)
+  {
+    const std::uint64_t hash = hashOf(shape, size);
+    std::size_t i = hash & this->mask();
+    for (; this->entries_[i].number != kNone; i = (i + 1) & this->mask())
+    {
+      const Entry& entry = this->entries_[i];
+      // Equal counts are equal lengths, and the first bytes are the counts.
+      if (entry.hash == hash && record.shapes.size() - entry.begin >= static_cast<std::size_t>(size) &&
+        std::memcmp(record.shapes.data() + entry.begin, shape.data(), size) == 0)
+      {
+        return entry.number;
+      }
+    }
+    const Index number = static_cast<Index>(record.shapeOffsets.size()) - 1;
+    this->entries_[i] = { hash, record.shapeOffsets.back(), number };
+    record.shapes.insert(record.shapes.end(), shape.begin(), shape.begin() + size);
+    record.shapeOffsets.push_back(static_cast<Index>(record.shapes.size()));
+    if (2 * record.shapeOffsets.size() > this->entries_.size())
+    {
+      this->grow();
+    }
+    return number;
+  }
+
+  void clear() { this->entries_ = {}; }
+
+private:
+  struct Entry
+  {
+    std::uint64_t hash;
+    Index begin; // in Record::shapes
+    Index number = kNone;
+  };
+
+  static std::uint64_t hashOf(const Shape& shape, int size)
+  {
+    std::uint64_t hash = 0;
+    for (int i = 0; i < size; i += 8)
+    {
+      std::uint64_t word = 0;
+      std::memcpy(&word, shape.data() + i, sizeof(word));
+      hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
+      hash ^= hash >> 29;
+    }
+    return hash ^ hash >> 32;
+  }
+
+  std::size_t mask() const { return this->entries_.size() - 1; }
+
+  void grow()
+  {
+    std::vector<Entry> old(2 * this->entries_.size());
+    old.swap(this->entries_);
+    for (const Entry& entry : old)
+    {
+      if (entry.number != kNone)
+      {
+        std::size_t i = entry.hash & this->mask();
+        while (this->entries_[i].number != kNone)
+        {
+          i = (i + 1) & this->mask();
+        }
+        this->entries_[i] = entry;
+      }
+    }
+  }
+
+  std::vector<Entry> entries_ = std::vector<Entry>(1024);
+};
+
+} // namespace
+
 // Steps in the order of removal and in original numbers; finish() reverses and renumbers.
 struct RecordBuilder::Internals
 {
@@ -340,9 +421,7 @@ struct RecordBuilder::Internals
   std::vector<Index> removedNodes;
   std::vector<Index> freedSlots; // step after step
   std::vector<Index> sources;    // current source of each slot, if tracked
-  // Shapes by content. The keys point into blocks that never move.
-  std::unordered_map<std::string, Index> shapeNumbers;
-  std::string scratch;
+  ShapeTable shapeTable;
   float largestError = 0.0F;
 };
 
@@ -386,16 +465,15 @@ void RecordBuilder::append(const Step& step)
   std::array<Index, kMaximumPatchCells + 2> extraNodes;
   std::fill_n(local.begin(), step.ringSize + 1, static_cast<unsigned char>(0));
   unsigned char locals = 0;
-  std::string& shape = in.scratch;
-  const int corners = kCorners * (step.oldCount + step.newCount);
-  shape.resize(3 + corners);
-  char* oldLocals = &shape[3];
-  char* newLocals = oldLocals + kCorners * step.oldCount;
+  ShapeTable::Shape shape;
+  int size = 3 + kCorners * (step.oldCount + step.newCount);
+  unsigned char* oldLocals = shape.data() + 3;
+  unsigned char* newLocals = oldLocals + kCorners * step.oldCount;
   for (int i = 0; i < kCorners * step.newCount; ++i)
   {
     unsigned char& number = local[step.newCells[i]];
     number = number != 0 ? number : ++locals;
-    newLocals[i] = static_cast<char>(number);
+    newLocals[i] = number;
   }
   int extra = 0;
   for (int i = 0; i < kCorners * step.oldCount; ++i)
@@ -406,15 +484,16 @@ void RecordBuilder::append(const Step& step)
       local[position] = ++locals;
       extraNodes[extra++] = step.ring[position - 1];
     }
-    oldLocals[i] = static_cast<char>(position == 0 ? 0 : local[position]);
+    oldLocals[i] = local[position]; // that of the removed node stays 0
   }
-  shape[0] = static_cast<char>(step.oldCount);
-  shape[1] = static_cast<char>(step.newCount);
-  shape[2] = static_cast<char>(extra);
+  shape[0] = static_cast<unsigned char>(step.oldCount);
+  shape[1] = static_cast<unsigned char>(step.newCount);
+  shape[2] = static_cast<unsigned char>(extra);
 
   if (record.hasSources)
   {
-    shape.append(reinterpret_cast<const char*>(step.sources), step.newCount);
+    std::copy_n(step.sources, step.newCount, shape.begin() + size);
+    size += step.newCount;
     std::uint64_t heirs = 0;
     std::array<Index, kMaximumPatchCells> inherited;
     for (int i = 0; i < step.newCount; ++i)
@@ -435,29 +514,27 @@ void RecordBuilder::append(const Step& step)
     }
   }
 
-  const auto [found, added] =
-    in.shapeNumbers.try_emplace(shape, static_cast<Index>(record.shapeOffsets.size()) - 1);
-  if (added)
-  {
-    record.shapes.insert(record.shapes.end(), shape.begin(), shape.end());
-    record.shapeOffsets.push_back(static_cast<Index>(record.shapes.size()));
-  }
-
-  record.stepShapes.push_back(found->second);
+  std::fill_n(shape.begin() + size, (8 - size % 8) % 8, static_cast<unsigned char>(0));
+  record.stepShapes.push_back(in.shapeTable.number(shape, size, record));
   in.largestError = std::max(in.largestError, static_cast<float>(step.error));
   record.stepErrors.push_back(in.largestError);
-  record.patches.insert(record.patches.end(), step.slots, step.slots + step.newCount);
-  record.patches.insert(record.patches.end(), extraNodes.begin(), extraNodes.begin() + extra);
+  const auto add = [](std::vector<Index>& to, const Index* values, int count) {
+    for (int i = 0; i < count; ++i)
+    {
+      to.push_back(values[i]);
+    }
+  };
+  add(record.patches, step.slots, step.newCount);
+  add(record.patches, extraNodes.data(), extra);
   in.removedNodes.push_back(step.node);
-  in.freedSlots.insert(
-    in.freedSlots.end(), step.slots + step.newCount, step.slots + step.oldCount);
+  add(in.freedSlots, step.slots + step.newCount, step.oldCount - step.newCount);
 }
 
 Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
 {
   Internals& in = *this->internals_;
   Record record = std::move(in.record);
-  in.shapeNumbers.clear();
+  in.shapeTable.clear();
   const Index steps = static_cast<Index>(in.removedNodes.size());
 
   // Reverse the steps. A list of chunks is reversed in place: the whole, then each chunk.
@@ -467,21 +544,22 @@ Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
   std::reverse(record.patches.begin(), record.patches.end());
   std::reverse(in.freedSlots.begin(), in.freedSlots.end());
   std::reverse(record.lostSources.begin(), record.lostSources.end());
-  auto patch = record.patches.begin();
-  auto freed = in.freedSlots.begin();
-  auto lost = record.lostSources.begin();
+  const auto reverseChunk = [](Index* begin, int size) {
+    std::reverse(begin, begin + size);
+    return begin + size;
+  };
+  const auto shapeOf = [&record](Index step) {
+    return record.shapes.data() + record.shapeOffsets[record.stepShapes[step]];
+  };
+  Index* freed = in.freedSlots.data();
+  Index* lost = record.lostSources.data();
   for (Index step = 0; step < steps; ++step)
   {
-    const unsigned char* shape = record.shapes.data() + record.shapeOffsets[record.stepShapes[step]];
-    const auto reverseChunk = [](auto& begin, int size) {
-      std::reverse(begin, begin + size);
-      begin += size;
-    };
-    reverseChunk(patch, shape[1] + shape[2]);
-    reverseChunk(freed, shape[0] - shape[1]);
+    const unsigned char* shape = shapeOf(step);
+    freed = reverseChunk(freed, shape[0] - shape[1]);
     if (record.hasSources)
     {
-      reverseChunk(lost, lostSourceCount(shape, kCorners));
+      lost = reverseChunk(lost, lostSourceCount(shape, kCorners));
     }
   }
 
@@ -489,29 +567,28 @@ Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
   record.cellCount = in.cellCount;
   record.baseNodeCount = in.nodeCount - steps;
   record.baseCellCount = in.cellCount - static_cast<Index>(in.freedSlots.size());
-  record.nodeOrder = recordOrder(in.nodeCount, in.removedNodes);
-  record.cellOrder = recordOrder(in.cellCount, in.freedSlots);
+  RecordOrder nodes(in.nodeCount, in.removedNodes);
   in.removedNodes = {};
+  RecordOrder slots(in.cellCount, in.freedSlots);
   in.freedSlots = {};
-
-  const std::vector<Index> nodePosition = inverse(record.nodeOrder);
+  record.nodeOrder = std::move(nodes.order);
+  record.cellOrder = std::move(slots.order);
+  Index* patch = record.patches.data();
+  for (Index step = 0; step < steps; ++step)
   {
-    const std::vector<Index> slotPosition = inverse(record.cellOrder);
-    patch = record.patches.begin();
-    for (Index step = 0; step < steps; ++step)
+    const unsigned char* shape = shapeOf(step);
+    Index* extras = patch + shape[1];
+    Index* end = reverseChunk(patch, shape[1] + shape[2]);
+    for (; patch != extras; ++patch)
     {
-      const unsigned char* shape =
-        record.shapes.data() + record.shapeOffsets[record.stepShapes[step]];
-      for (int i = 0; i < shape[1]; ++i, ++patch)
-      {
-        *patch = slotPosition[*patch];
-      }
-      for (int i = 0; i < shape[2]; ++i, ++patch)
-      {
-        *patch = nodePosition[*patch];
-      }
+      *patch = slots.position[*patch];
+    }
+    for (; patch != end; ++patch)
+    {
+      *patch = nodes.position[*patch];
     }
   }
+  slots.position = {};
 
   baseCells.resize(std::size_t{ kCorners } * record.baseCellCount);
   for (Index slot = 0; slot < record.baseCellCount; ++slot)
@@ -519,7 +596,7 @@ Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
     for (int corner = 0; corner < kCorners; ++corner)
     {
       baseCells[std::size_t{ kCorners } * slot + corner] =
-        nodePosition[cells[std::size_t{ kCorners } * record.cellOrder[slot] + corner]];
+        nodes.position[cells[std::size_t{ kCorners } * record.cellOrder[slot] + corner]];
     }
   }
   if (record.hasSources)

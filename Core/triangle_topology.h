@@ -83,7 +83,7 @@ enum class NodeKind : unsigned char
 class TriangleTopology
 {
 public:
-  struct Triangle
+  struct alignas(32) Triangle // two fill a cache line
   {
     std::array<Index, 3> nodes;
     std::array<Corner, 3> across; ///< across[c]: the corner opposite to this triangle's corner c
@@ -102,32 +102,43 @@ public:
   /// One fan, closed or open: only such nodes can be removed.
   bool isManifold(Index node) const { return this->nodes_[node].kind <= NodeKind::Boundary; }
 
-  /// Bring the data around a node that will be gathered soon into the cache, in three stages that
-  /// each use what the one before has brought: the node, its triangle, the triangles beside that.
+  /// Bring the data around a node that will be gathered soon into the cache, in four stages that each
+  /// use what the ones before have brought: the node, its triangle, the triangles beside that, and the
+  /// nodes around it with the triangles behind them.
   void prefetchNode(Index node) const { __builtin_prefetch(&this->nodes_[node]); }
-  void prefetchTriangle(Index node) const
-  {
-    const Corner corner = this->nodes_[node].corner;
-    if (corner != kNoCorner)
-    {
-      __builtin_prefetch(&this->triangles_[triangleOf(corner)]);
-    }
-  }
-  template <typename Visit>
-  void prefetchRing(Index node, Visit&& visitNode) const
+  void prefetchTriangle(Index node) const { this->prefetchTriangleOf(this->nodes_[node].corner); }
+  void prefetchNeighbours(Index node) const
   {
     const Corner corner = this->nodes_[node].corner;
     if (corner != kNoCorner)
     {
       const Triangle& t = this->triangles_[triangleOf(corner)];
-      for (int c = 0; c < 3; ++c)
+      this->prefetchTriangleOf(t.across[nextCorner(cornerOf(corner))]);
+      this->prefetchTriangleOf(t.across[previousCorner(cornerOf(corner))]);
+    }
+  }
+  /// @param visitNode void(Index), called for some or all nodes around, to prefetch more about them
+  template <typename VisitNode>
+  void prefetchRing(Index node, VisitNode&& visitNode) const
+  {
+    constexpr int kEnough = 8; // rings are rarely larger
+    const Corner start = this->nodes_[node].corner;
+    Corner corner = start;
+    for (int i = 0; i < kEnough && corner != kNoCorner; ++i)
+    {
+      const Triangle& t = this->triangles_[triangleOf(corner)];
+      const int c = cornerOf(corner);
+      const Index around = t.nodes[nextCorner(c)];
+      this->prefetchNode(around);
+      visitNode(around);
+      this->prefetchTriangleOf(t.across[c]);
+      const Corner opposite = t.across[nextCorner(c)];
+      corner = opposite == kNoCorner
+        ? kNoCorner
+        : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
+      if (corner == start)
       {
-        __builtin_prefetch(&this->nodes_[t.nodes[c]]);
-        visitNode(t.nodes[c]);
-        if (t.across[c] != kNoCorner)
-        {
-          __builtin_prefetch(&this->triangles_[triangleOf(t.across[c])]);
-        }
+        break;
       }
     }
   }
@@ -175,6 +186,13 @@ private:
     NodeKind kind = NodeKind::Unused;
   };
 
+  void prefetchTriangleOf(Corner corner) const
+  {
+    if (corner != kNoCorner)
+    {
+      __builtin_prefetch(&this->triangles_[triangleOf(corner)]);
+    }
+  }
   bool findEdge(Index a, Index b) const;
   bool haveEdge(Index a, Index b) const;
   bool fillsExistingTriangle(const Hole& hole) const;
