@@ -4,10 +4,12 @@
 /// @file core_timing.cpp
 /// @brief CPU time of the core on grids: decimation, undecimation, a change of level.
 ///
-///   core_timing linear MESH TARGET_NODES REPS [deviation]   decimation and undecimation of all nodes
-///   core_timing level MESH TARGET_NODES REPS                a change of level by 1 % against memcpy
+///   core_timing linear MESH TARGET_NODES REPS [deviation]   decimation and undecimation of all
+///   nodes core_timing level MESH TARGET_NODES REPS                a change of level by 1 % against
+///   memcpy
 ///
-/// A mesh file is that of decimate_cli.cpp. Prints one JSON object; times are CPU seconds (medians).
+/// A mesh file is that of decimate_cli.cpp. Prints one JSON object; times are CPU seconds
+/// (medians).
 
 #include "hash_queue_decimation.h"
 #include "undecimation.h"
@@ -54,8 +56,8 @@ template <typename T>
 void readArray(std::ifstream& in, std::vector<T>& array, std::int64_t size)
 {
   array.resize(static_cast<std::size_t>(size));
-  in.read(reinterpret_cast<char*>(array.data()),
-    static_cast<std::streamsize>(array.size() * sizeof(T)));
+  in.read(
+    reinterpret_cast<char*>(array.data()), static_cast<std::streamsize>(array.size() * sizeof(T)));
 }
 
 bool readMesh(const std::string& name, Mesh& mesh)
@@ -159,10 +161,9 @@ int linear(const Mesh& mesh, std::int64_t nodes, int reps, bool deviation)
   std::printf("{\"nodes\": %lld, \"left\": %lld, \"decimation\": %.6f, \"open\": %.6f, "
               "\"undecimation\": %.6f, \"exact\": %s, \"record_bytes\": %zu, \"stop\": \"%s\", "
               "\"runs\": %d}\n",
-    static_cast<long long>(mesh.header[0]),
-    static_cast<long long>(run.result.record.baseNodeCount), median(forth), median(open),
-    median(back), exact ? "true" : "false", bytes, undecimate::toString(run.result.stopReason),
-    reps);
+    static_cast<long long>(mesh.header[0]), static_cast<long long>(run.result.record.baseNodeCount),
+    median(forth), median(open), median(back), exact ? "true" : "false", bytes,
+    undecimate::toString(run.result.stopReason), reps);
   return exact ? 0 : 1;
 }
 
@@ -225,16 +226,15 @@ int level(const Mesh& mesh, std::int64_t nodes, int reps)
       const std::size_t cells = static_cast<std::size_t>(cursor.cellCount());
       std::memcpy(out.points.data(), source.points.data(), 3 * points * sizeof(double));
       std::memcpy(out.values.data(), source.values.data(), points * sizeof(float));
-      std::memcpy(
-        out.offsets.data(), source.offsets.data(), (cells + 1) * sizeof(std::int64_t));
+      std::memcpy(out.offsets.data(), source.offsets.data(), (cells + 1) * sizeof(std::int64_t));
       std::copy_n(cursor.cells(), 3 * cells, out.connectivity.data());
       const double handed = cpuSeconds() - start;
       start = cpuSeconds();
       std::memcpy(copy.points.data(), out.points.data(), 3 * points * sizeof(double));
       std::memcpy(copy.values.data(), out.values.data(), points * sizeof(float));
       std::memcpy(copy.offsets.data(), out.offsets.data(), (cells + 1) * sizeof(std::int64_t));
-      std::memcpy(copy.connectivity.data(), out.connectivity.data(),
-        3 * cells * sizeof(std::int64_t));
+      std::memcpy(
+        copy.connectivity.data(), out.connectivity.data(), 3 * cells * sizeof(std::int64_t));
       const double copied = cpuSeconds() - start;
       moves.push_back(moved);
       hands.push_back(handed);

@@ -65,8 +65,8 @@ template <typename T>
 void readArray(std::ifstream& in, std::vector<T>& array, std::int64_t size)
 {
   array.resize(static_cast<std::size_t>(size));
-  in.read(reinterpret_cast<char*>(array.data()),
-    static_cast<std::streamsize>(array.size() * sizeof(T)));
+  in.read(
+    reinterpret_cast<char*>(array.data()), static_cast<std::streamsize>(array.size() * sizeof(T)));
 }
 
 bool readMesh(const std::string& name, Mesh& mesh)
