@@ -3,7 +3,6 @@
 
 #include "deviation.h"
 
-#include "polygon_triangulations.h"
 #include "triangle_distance.h"
 
 #include <algorithm>
@@ -20,8 +19,11 @@ namespace
 constexpr Vector kOrigin{ 0.0, 0.0, 0.0 };
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// A new triangle may not turn away from the old one on the same ring edge by more than this.
-constexpr double kMinimumCosine = 0.1;
+// A new triangle may not turn away from the old one on the same ring edge by more than this. A thin
+// one less: a needle across the surface is a fold, whatever its distance.
+constexpr double kMinimumCosine = 0.15;
+constexpr double kNeedleCosine = 0.9;
+constexpr double kNeedleShape = 0.1;
 
 // Below this shape (1 = equilateral) a triangle counts as degenerate.
 constexpr double kMinimumShape = 1e-4;
@@ -30,23 +32,27 @@ constexpr double kMinimumShape = 1e-4;
 // costs more than an equilateral one, as a fraction of the size of the hole.
 constexpr double kShapeWeight = 1e-3;
 
-// The same for the order of the nodes: keeps flat regions even.
-constexpr double kShapeOrderWeight = 1e-6;
-
-// Holes of more nodes than have listed triangulations compare so many fans.
+// Holes of up to so many nodes are filled with the best of all triangulations; larger ones compare
+// ear cutting and some fans.
+constexpr int kMaximumCompared = 16;
 constexpr int kMaximumFans = 12;
+constexpr int kMaximumPairs = kMaximumCompared * (kMaximumCompared - 1) / 2;
+constexpr int kMaximumTriples = kMaximumPairs * (kMaximumCompared - 2) / 3;
 
-using Triple = PolygonTriangulations::Triangle;
+// Samples are compared in chunks that stay in the cache.
+constexpr int kChunk = 256;
 
-/// 4 sqrt(3) area / sum of squared edges: 1 for an equilateral triangle.
-double shapeOf(const Vector& a, const Vector& b, const Vector& c, const Vector& normal)
+// Positions of pairs i < j and triples i < j < k in lists that do not depend on the hole's size.
+constexpr int pairNumber(int i, int j)
 {
-  const Vector ab = b - a;
-  const Vector bc = c - b;
-  const Vector ca = a - c;
-  const double edges = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
-  return edges > 0.0 ? 2.0 * std::sqrt(3.0) * std::sqrt(dot(normal, normal)) / edges : 0.0;
+  return j * (j - 1) / 2 + i;
 }
+constexpr int tripleNumber(int i, int j, int k)
+{
+  return k * (k - 1) * (k - 2) / 6 + j * (j - 1) / 2 + i;
+}
+
+using Triple = std::array<unsigned char, 3>;
 
 double squaredDistanceToSegment(const Vector& p, const Vector& a, const Vector& b)
 {
@@ -79,34 +85,46 @@ double diagonalOf(const TriangleTopology& topology, const MeshPoints& points)
   return std::isfinite(diagonal) ? diagonal : 0.0;
 }
 
+/// Room for at least so many values; what was there is kept, and nothing is cleared.
+void grow(std::vector<float>& row, std::size_t size)
+{
+  if (row.size() < size)
+  {
+    row.resize(size + size / 2);
+  }
+}
+
 /// Points as rows, relative to the removed node.
 struct Rows
 {
   std::vector<float> x;
   std::vector<float> y;
   std::vector<float> z;
+  std::size_t count = 0;
 
-  void clear()
-  {
-    this->x.clear();
-    this->y.clear();
-    this->z.clear();
-  }
+  void clear() { this->count = 0; }
   void add(const Vector& p)
   {
-    this->x.push_back(static_cast<float>(p.x));
-    this->y.push_back(static_cast<float>(p.y));
-    this->z.push_back(static_cast<float>(p.z));
+    if (this->count == this->x.size())
+    {
+      grow(this->x, this->count + kRowBlock);
+      grow(this->y, this->count + kRowBlock);
+      grow(this->z, this->count + kRowBlock);
+    }
+    this->x[this->count] = static_cast<float>(p.x);
+    this->y[this->count] = static_cast<float>(p.y);
+    this->z[this->count] = static_cast<float>(p.z);
+    ++this->count;
   }
-  int size() const { return static_cast<int>(this->x.size()); }
 
   /// Repeat the first point up to whole vectors.
   PointRows padded()
   {
-    const int size = paddedSize(this->size());
-    this->x.resize(size, this->x.front());
-    this->y.resize(size, this->y.front());
-    this->z.resize(size, this->z.front());
+    const int size = paddedSize(static_cast<int>(this->count));
+    while (this->count < static_cast<std::size_t>(size))
+    {
+      this->add({ this->x[0], this->y[0], this->z[0] });
+    }
     return { this->x.data(), this->y.data(), this->z.data(), size };
   }
 };
@@ -135,26 +153,43 @@ struct DeviationCriterion::Internals
   std::array<Vector, kMaximumPatchCells> oldNormals;
   Vector normal;
   double radius = 0.0;
-  Rows samples; // node, middles of its edges, nodes removed before
-  std::vector<Index> sampleNodes; // of the samples after the middles
-  int firstNodeSample = 0;
-  std::vector<float> values; // of the arrays: a row of samples for each component
+  Rows samples;                   // the node, then the nodes removed before
+  std::vector<Index> sampleNodes; // all of them
+  std::vector<float> values;      // of the arrays: a row of samples for each component
   PointRows sampleRows;
-  Rows probes; // middles of new edges and centroids of new triangles
-  std::vector<float> probeSquares;
   double fixedSquare = 0.0; // what every triangulation costs: the new boundary edge
 
+  // The hole in the plane of its mean normal.
+  Vector axisX;
+  Vector axisY;
+  struct Point
+  {
+    float x;
+    float y;
+  };
+  std::array<Point, kMaximumCompared> flat;
+
+  // Triangles of ring nodes that may be part of the new surface.
   struct Candidate
   {
     bool valid = false;
     double shape = 0.0;
-    float reverse = 0.0F; // squared: its centroid and its new edges to the old triangles
+    Vector normal;        // unit
+    float square = 0.0F;  // largest over the samples in it
   };
-  std::vector<Candidate> candidates;
-  std::vector<float> squares; // a row of samples for each candidate
-  std::vector<float> errors;  // the same for the arrays' errors
+  std::array<Candidate, kMaximumTriples> candidates;
+  std::array<float, kMaximumPairs> crossings; // of new edges, see crossingSquare()
+  std::vector<float> sides;                   // a row of a chunk for each pair
+  std::array<float, kChunk> flatX;            // samples in the plane, a chunk
+  std::array<float, kChunk> flatY;
+  std::array<float, std::size_t{ 2 } * kChunk> chunkValues;
+
+  // Rows of samples for each triangle of one triangulation.
+  std::vector<float> squares;
+  std::vector<float> errors;
   std::vector<float> weightB;
   std::vector<float> weightC;
+  std::vector<float> sums;
   std::array<std::array<bool, kMaximumPatchCells + 1>, kMaximumPatchCells + 1> forbidden;
 
   struct Best
@@ -162,12 +197,10 @@ struct DeviationCriterion::Internals
     bool found = false;
     double score = HUGE_VAL;
     double square = 0.0;
-    double shape = 0.0;
     HoleTriangulation filling;
-    std::array<int, kMaximumPatchCells> rows; // of its triangles in `squares`
   };
   Best best;
-  std::vector<unsigned char> assignment; // triangle of the best filling for each node sample
+  std::vector<unsigned char> assignment; // triangle of the best filling for each sample
 
   Internals(TriangleTopology& topology_, const MeshPoints& points_,
     const std::vector<NodalArrayView>& arrays_)
@@ -182,12 +215,21 @@ struct DeviationCriterion::Internals
   void addSampleValues(const Hole& hole);
   void boundarySquare(const Hole& hole);
   Candidate judge(const Hole& hole, const Triple& t) const;
-  void probe(const Hole& hole, const std::vector<Triple>& triangles);
+  float crossingSquare(const Hole& hole, int i, int j) const;
+  bool isRingEdge(const Hole& hole, int i, int j) const
+  {
+    return j == i + 1 || (!hole.boundary && i == 0 && j == hole.size - 1);
+  }
+  void judgeAll(const Hole& hole);
+  void measureCandidates(const Hole& hole);
+  const float* chunkErrors(const Hole& hole, const Triple& t, int first, int count);
+  bool chooseTriangulation(const Hole& hole, HoleTriangulation& filling) const;
   void fillRow(const Hole& hole, const Triple& t, int row);
-  void compareListed(const Hole& hole);
-  void compareLarge(const Hole& hole);
-  void offer(const Triple* triangles, const int* rows, int count, double shape, double reverse);
-  double sampleSquare(const int* rows, int count, double limit) const;
+  double sampleSquare(int count) const;
+  void offer(const Hole& hole, const HoleTriangulation& filling);
+  double shapeTerm(double shape) const { return kShapeWeight * this->radius * (1.0 - shape); }
+  void compareAll(const Hole& hole);
+  void compareSome(const Hole& hole);
   bool findBest(const Hole& hole);
   bool forbidExisting(const Hole& hole);
   void assign(const HoleTriangulation& filling);
@@ -248,7 +290,13 @@ bool DeviationCriterion::Internals::prepare(const Hole& hole)
     this->oldNormals[i] = cross(this->ring[i], this->ring[i + 1 == hole.size ? 0 : i + 1]);
     this->normal = this->normal + this->oldNormals[i];
   }
-  return std::isfinite(square);
+  const double length = std::sqrt(dot(this->normal, this->normal));
+  if (!(length > 0.0) || !std::isfinite(length))
+  {
+    return false;
+  }
+  this->normal = (1.0 / length) * this->normal;
+  return true;
 }
 
 void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
@@ -257,11 +305,7 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
   this->samples.clear();
   this->sampleNodes.clear();
   this->samples.add(kOrigin);
-  for (int i = 0; i < hole.size; ++i)
-  {
-    this->samples.add(0.5 * this->ring[i]);
-  }
-  this->firstNodeSample = this->samples.size();
+  this->sampleNodes.push_back(hole.node);
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     for (Index node = this->topology.triangle(triangleOf(hole.corners[i])).first; node != kNone;
@@ -272,35 +316,22 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
     }
   }
   this->sampleRows = this->samples.padded();
-  if (this->useArrays)
+  if (!this->useArrays)
   {
-    this->addSampleValues(hole);
+    return;
   }
-}
-
-void DeviationCriterion::Internals::addSampleValues(const Hole& hole)
-{
-  const int size = this->sampleRows.size;
   this->values.clear();
   for (const NodalArrayView& array : this->arrays)
   {
     for (int component = 0; component < array.components; ++component)
     {
-      const auto valueAt = [&](Index node) {
-        return array.values[std::size_t{ 1 } * array.components * node + component];
-      };
-      const std::size_t start = this->values.size();
-      const float own = valueAt(hole.node);
-      this->values.push_back(own);
-      for (int i = 0; i < hole.size; ++i)
-      {
-        this->values.push_back(0.5F * (own + valueAt(hole.ring[i])));
-      }
+      const std::size_t end = this->values.size() + this->sampleRows.size;
+      const float* value = array.values + component;
       for (const Index node : this->sampleNodes)
       {
-        this->values.push_back(valueAt(node));
+        this->values.push_back(value[std::size_t{ 1 } * array.components * node]);
       }
-      this->values.resize(start + size, own);
+      this->values.resize(end, value[std::size_t{ 1 } * array.components * hole.node]);
     }
   }
 }
@@ -335,15 +366,21 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
 {
   Candidate candidate;
   const int last = hole.size - 1;
-  const Vector& a = this->ring[t[0]];
-  const Vector& b = this->ring[t[1]];
-  const Vector& c = this->ring[t[2]];
-  const Vector n = cross(b - a, c - a);
-  candidate.shape = shapeOf(a, b, c, n);
-  if (!(candidate.shape > kMinimumShape))
+  const Vector ab = this->ring[t[1]] - this->ring[t[0]];
+  const Vector ac = this->ring[t[2]] - this->ring[t[0]];
+  const Vector bc = ac - ab;
+  const Vector n = cross(ab, ac);
+  const double areaSquare = dot(n, n);
+  const double edges = dot(ab, ab) + dot(bc, bc) + dot(ac, ac);
+  if (!(areaSquare > kMinimumShape * kMinimumShape / 12.0 * edges * edges))
   {
     return candidate;
   }
+  const double area = std::sqrt(areaSquare);
+  candidate.shape = 2.0 * std::sqrt(3.0) * area / edges;
+  candidate.normal = (1.0 / area) * n;
+  const double minimumCosine = kMinimumCosine +
+    (kNeedleCosine - kMinimumCosine) * std::max(0.0, 1.0 - candidate.shape / kNeedleShape);
   bool onRing = false;
   for (int k = 0; k < 3; ++k)
   {
@@ -354,7 +391,8 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
     {
       onRing = true;
       const Vector& old = this->oldNormals[from];
-      if (!(dot(n, old) > kMinimumCosine * std::sqrt(dot(n, n) * dot(old, old))))
+      const double cosine = dot(candidate.normal, old);
+      if (!(cosine > 0.0 && cosine * cosine > minimumCosine * minimumCosine * dot(old, old)))
       {
         return candidate;
       }
@@ -364,7 +402,7 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
       return candidate;
     }
   }
-  if (!onRing && !(dot(n, this->normal) > 0.0))
+  if (!onRing && !(dot(candidate.normal, this->normal) > minimumCosine))
   {
     return candidate;
   }
@@ -372,69 +410,274 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
   return candidate;
 }
 
-// Sample (c): middles of the new edges and centroids of the new triangles against the old ones.
-void DeviationCriterion::Internals::probe(const Hole& hole, const std::vector<Triple>& triangles)
+// Where a new edge crosses the old ones its distance to the old surface has its extremes: two
+// surfaces of flat pieces are farthest apart at a node of one or at a crossing of their edges.
+float DeviationCriterion::Internals::crossingSquare(const Hole& hole, int i, int j) const
 {
-  this->probes.clear();
-  const int last = hole.size - 1;
-  for (int i = 0; i < hole.size; ++i)
-  {
-    for (int j = i + 1; j < hole.size; ++j)
+  const Vector& a = this->ring[i];
+  const Vector along = this->ring[j] - a;
+  // The old edges between i and j, or those of the other side, whichever lie across from the node.
+  const bool nodeOnLeft = dot(cross(along, kOrigin - a), this->normal) >= 0.0;
+  double largest = 0.0;
+  const auto measure = [&](int k) {
+    const Vector m = cross(along, this->ring[k]);
+    const double square = dot(m, m);
+    const double height = dot(a, m);
+    if (height * height > largest * square)
     {
-      this->probes.add(0.5 * (this->ring[i] + this->ring[j]));
+      largest = height * height / square;
     }
-  }
-  const int firstCentroid = this->probes.size();
-  for (const Triple& t : triangles)
-  {
-    this->probes.add((1.0 / 3.0) * (this->ring[t[0]] + this->ring[t[1]] + this->ring[t[2]]));
-  }
-  const PointRows rows = this->probes.padded();
-  this->probeSquares.assign(rows.size, kInfinity);
-  for (int i = 0; i < hole.triangleCount; ++i)
-  {
-    DistanceTriangle old;
-    if (old.set(kOrigin, this->ring[i], this->ring[i + 1 == hole.size ? 0 : i + 1]))
-    {
-      old.lowerSquaredDistances(rows, this->probeSquares.data());
-    }
-  }
-  const auto edgeProbe = [&](int i, int j) {
-    // Position of pair (i, j), i < j, in the list above.
-    return this->probeSquares[i * hole.size - i * (i + 1) / 2 + j - i - 1];
   };
-  for (std::size_t k = 0; k < triangles.size(); ++k)
+  if (nodeOnLeft)
   {
-    Candidate& candidate = this->candidates[k];
-    const Triple& t = triangles[k];
-    candidate.reverse = this->probeSquares[firstCentroid + k];
-    for (int corner = 0; corner < 3; ++corner)
+    for (int k = i + 1; k < j; ++k)
     {
-      const int i = std::min(t[corner], t[nextCorner(corner)]);
-      const int j = std::max(t[corner], t[nextCorner(corner)]);
-      const bool ringEdge = j == i + 1 || (!hole.boundary && i == 0 && j == last);
-      if (!ringEdge)
+      measure(k);
+    }
+  }
+  else if (!hole.boundary)
+  {
+    for (int k = 0; k < i; ++k)
+    {
+      measure(k);
+    }
+    for (int k = j + 1; k < hole.size; ++k)
+    {
+      measure(k);
+    }
+  }
+  return static_cast<float>(largest);
+}
+
+// All triangles of a small hole, and the edges that they would add.
+void DeviationCriterion::Internals::judgeAll(const Hole& hole)
+{
+  for (int j = 1; j < hole.size; ++j)
+  {
+    for (int i = 0; i < j; ++i)
+    {
+      this->crossings[pairNumber(i, j)] =
+        this->isRingEdge(hole, i, j) ? 0.0F : this->crossingSquare(hole, i, j);
+    }
+  }
+  int number = 0;
+  for (int k = 2; k < hole.size; ++k)
+  {
+    for (int j = 1; j < k; ++j)
+    {
+      for (int i = 0; i < j; ++i)
       {
-        candidate.reverse = std::max(candidate.reverse, edgeProbe(i, j));
+        this->candidates[number++] = this->judge(hole,
+          { static_cast<unsigned char>(i), static_cast<unsigned char>(j),
+            static_cast<unsigned char>(k) });
       }
     }
   }
 }
 
-// Distances (and array errors) of all samples to one candidate triangle.
+// Largest squared height of the samples over each candidate triangle in which they lie, as seen
+// along the hole's normal. Every triangulation shares the samples out among its triangles in this
+// way, so that its cost is that of its worst triangle. A sample outside the hole counts for the
+// triangle on the ring edge that it lies behind.
+void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
+{
+  const Vector axis = std::abs(this->normal.x) < 0.6 ? Vector{ 1.0, 0.0, 0.0 }
+                                                     : Vector{ 0.0, 1.0, 0.0 };
+  Vector u = cross(axis, this->normal);
+  u = (1.0 / std::sqrt(dot(u, u))) * u;
+  this->axisX = u;
+  this->axisY = cross(this->normal, u);
+  for (int i = 0; i < hole.size; ++i)
+  {
+    this->flat[i] = { static_cast<float>(dot(this->ring[i], this->axisX)),
+      static_cast<float>(dot(this->ring[i], this->axisY)) };
+  }
+  grow(this->sides, std::size_t{ 1 } * kChunk * pairNumber(0, hole.size));
+  static const std::array<float, kChunk> kInside{}; // on the line: inside on either side
+  const auto isOutline = [last = hole.size - 1](int i, int j) {
+    return j == i + 1 || (i == 0 && j == last);
+  };
+  for (int first = 0; first < this->sampleRows.size; first += kChunk)
+  {
+    const int count = std::min(kChunk, this->sampleRows.size - first);
+    const PointRows chunk{ this->sampleRows.x + first, this->sampleRows.y + first,
+      this->sampleRows.z + first, count };
+    project(chunk, this->axisX, this->axisY, this->flatX.data(), this->flatY.data());
+    for (int j = 1; j < hole.size; ++j)
+    {
+      for (int i = 0; i < j; ++i)
+      {
+        float* row = this->sides.data() + std::size_t{ 1 } * kChunk * pairNumber(i, j);
+        if (!isOutline(i, j))
+        {
+          const float dx = this->flat[j].x - this->flat[i].x;
+          const float dy = this->flat[j].y - this->flat[i].y;
+          sidesOfLine(this->flatX.data(), this->flatY.data(), count, dx, dy,
+            dx * this->flat[i].y - dy * this->flat[i].x, row);
+        }
+      }
+    }
+    int number = 0;
+    for (int k = 2; k < hole.size; ++k)
+    {
+      for (int j = 1; j < k; ++j)
+      {
+        for (int i = 0; i < j; ++i, ++number)
+        {
+          Candidate& candidate = this->candidates[number];
+          if (!candidate.valid)
+          {
+            continue;
+          }
+          const auto side = [&](int from, int to) -> const float* {
+            return isOutline(from, to)
+              ? kInside.data()
+              : this->sides.data() + std::size_t{ 1 } * kChunk * pairNumber(from, to);
+          };
+          const Triple t{ static_cast<unsigned char>(i), static_cast<unsigned char>(j),
+            static_cast<unsigned char>(k) };
+          const float* extra = this->useArrays ? this->chunkErrors(hole, t, first, count) : nullptr;
+          const float square = largestSquaredHeight(chunk, candidate.normal,
+            dot(candidate.normal, this->ring[i]), { side(i, j), side(j, k), side(i, k) }, extra);
+          candidate.square = std::max(candidate.square, square);
+        }
+      }
+    }
+  }
+}
+
+// Squared errors of the arrays over a candidate triangle: each component is a linear function of the
+// place in the plane.
+const float* DeviationCriterion::Internals::chunkErrors(
+  const Hole& hole, const Triple& t, int first, int count)
+{
+  float* __restrict__ largest = this->chunkValues.data();
+  float* __restrict__ sum = largest + kChunk;
+  const float* __restrict__ x = this->flatX.data();
+  const float* __restrict__ y = this->flatY.data();
+  std::fill_n(largest, count, 0.0F);
+  const Point& a = this->flat[t[0]];
+  const float bx = this->flat[t[1]].x - a.x;
+  const float by = this->flat[t[1]].y - a.y;
+  const float cx = this->flat[t[2]].x - a.x;
+  const float cy = this->flat[t[2]].y - a.y;
+  const float determinant = bx * cy - by * cx;
+  if (!(determinant > 0.0F))
+  {
+    return largest;
+  }
+  const float* __restrict__ value = this->values.data() + first;
+  for (std::size_t n = 0; n < this->arrays.size(); ++n)
+  {
+    const NodalArrayView& array = this->arrays[n];
+    const float scale = static_cast<float>(this->arrayScales[n] * this->arrayScales[n]);
+    std::fill_n(sum, count, 0.0F);
+    for (int component = 0; component < array.components;
+         ++component, value += this->sampleRows.size)
+    {
+      const auto valueAt = [&](int corner) {
+        return array.values[std::size_t{ 1 } * array.components * hole.ring[t[corner]] + component];
+      };
+      const float f = valueAt(0);
+      const float fb = valueAt(1) - f;
+      const float fc = valueAt(2) - f;
+      const float gx = (fb * cy - fc * by) / determinant;
+      const float gy = (fc * bx - fb * cx) / determinant;
+      const float f0 = f - gx * a.x - gy * a.y;
+      for (int s = 0; s < count; ++s)
+      {
+        const float difference = f0 + gx * x[s] + gy * y[s] - value[s];
+        sum[s] += difference * difference;
+      }
+    }
+    for (int s = 0; s < count; ++s)
+    {
+      const float error = scale * sum[s];
+      largest[s] = largest[s] > error ? largest[s] : error;
+    }
+  }
+  return largest;
+}
+
+// The triangulation with the smallest sum of the fourth powers of its triangles' costs (their
+// squares squared): nearly the one whose worst triangle is best, and the others are good too.
+// Dynamic programming over the parts of the polygon behind each pair of nodes (G. T. Klincsek:
+// Minimal triangulations of polygonal domains, Annals of Discrete Mathematics 9 (1980)).
+bool DeviationCriterion::Internals::chooseTriangulation(
+  const Hole& hole, HoleTriangulation& filling) const
+{
+  std::array<double, kMaximumPairs> sums;
+  std::array<unsigned char, kMaximumPairs> apexes;
+  const double unit = 1.0 / (this->radius * this->radius);
+  for (int span = 1; span < hole.size; ++span)
+  {
+    for (int i = 0; i + span < hole.size; ++i)
+    {
+      const int k = i + span;
+      const int here = pairNumber(i, k);
+      sums[here] = span == 1 ? 0.0 : HUGE_VAL;
+      for (int j = i + 1; j < k; ++j)
+      {
+        const Candidate& candidate = this->candidates[tripleNumber(i, j, k)];
+        const int before = pairNumber(i, j);
+        const int behind = pairNumber(j, k);
+        if (!candidate.valid)
+        {
+          continue;
+        }
+        const double distance = std::max({ candidate.square, this->crossings[before],
+          this->crossings[behind], this->crossings[here] });
+        const double shape = this->shapeTerm(candidate.shape);
+        const double square = unit * (distance + shape * shape);
+        const double sum = sums[before] + sums[behind] + square * square;
+        if (sum < sums[here])
+        {
+          sums[here] = sum;
+          apexes[here] = static_cast<unsigned char>(j);
+        }
+      }
+    }
+  }
+  if (!(sums[pairNumber(0, hole.size - 1)] < HUGE_VAL))
+  {
+    return false;
+  }
+  filling.count = 0;
+  std::array<std::array<unsigned char, 2>, kMaximumCompared> parts;
+  int left = 0;
+  parts[left++] = { 0, static_cast<unsigned char>(hole.size - 1) };
+  while (left > 0)
+  {
+    const auto [i, k] = parts[--left];
+    const unsigned char j = apexes[pairNumber(i, k)];
+    filling.triangles[filling.count++] = { i, j, k };
+    if (j > i + 1)
+    {
+      parts[left++] = { i, j };
+    }
+    if (k > j + 1)
+    {
+      parts[left++] = { j, k };
+    }
+  }
+  return true;
+}
+
+// Distances (and array errors) of all samples to one triangle of a triangulation.
 void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, int row)
 {
-  DistanceTriangle triangle;
-  triangle.set(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
   const int size = this->sampleRows.size;
   float* squareRow = this->squares.data() + std::size_t{ 1 } * row * size;
+  DistanceTriangle triangle;
+  triangle.set(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
   if (!this->useArrays)
   {
     triangle.squaredDistances(this->sampleRows, squareRow);
     return;
   }
-  this->weightB.resize(size);
-  this->weightC.resize(size);
+  grow(this->weightB, size);
+  grow(this->weightC, size);
+  grow(this->sums, size);
   triangle.closestPoints(
     this->sampleRows, squareRow, this->weightB.data(), this->weightC.data());
   float* __restrict__ errorRow = this->errors.data() + std::size_t{ 1 } * row * size;
@@ -442,18 +685,16 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
   const float* __restrict__ wB = this->weightB.data();
   const float* __restrict__ wC = this->weightC.data();
   const float* __restrict__ value = this->values.data();
-  std::vector<float>& sum = this->probeSquares; // free at this point
-  for (std::size_t k = 0; k < this->arrays.size(); ++k)
+  float* __restrict__ sum = this->sums.data();
+  for (std::size_t n = 0; n < this->arrays.size(); ++n)
   {
-    const NodalArrayView& array = this->arrays[k];
-    const float scale = static_cast<float>(this->arrayScales[k] * this->arrayScales[k]);
-    sum.assign(size, 0.0F);
-    float* __restrict__ sumRow = sum.data();
+    const NodalArrayView& array = this->arrays[n];
+    const float scale = static_cast<float>(this->arrayScales[n] * this->arrayScales[n]);
+    std::fill_n(sum, size, 0.0F);
     for (int component = 0; component < array.components; ++component, value += size)
     {
       const auto valueAt = [&](int corner) {
-        return array
-          .values[std::size_t{ 1 } * array.components * hole.ring[t[corner]] + component];
+        return array.values[std::size_t{ 1 } * array.components * hole.ring[t[corner]] + component];
       };
       const float a = valueAt(0);
       const float ab = valueAt(1) - a;
@@ -461,231 +702,156 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
       for (int i = 0; i < size; ++i)
       {
         const float difference = a + wB[i] * ab + wC[i] * ac - value[i];
-        sumRow[i] += difference * difference;
+        sum[i] += difference * difference;
       }
     }
     for (int i = 0; i < size; ++i)
     {
-      const float error = scale * sumRow[i];
+      const float error = scale * sum[i];
       errorRow[i] = errorRow[i] > error ? errorRow[i] : error;
     }
   }
 }
 
-// Largest over the samples of the squared distance to the nearest of some candidates, and of the
-// arrays' error there; gives up once it is over the limit.
-double DeviationCriterion::Internals::sampleSquare(const int* rows, int count, double limit) const
+// Largest over the samples of the squared distance to the nearest triangle, and of the arrays' error
+// there.
+double DeviationCriterion::Internals::sampleSquare(int count) const
 {
   const int size = this->sampleRows.size;
-  const float* base = this->squares.data();
-  const float* errorBase = this->errors.data();
   float largest = 0.0F;
   for (int begin = 0; begin < size; begin += kRowBlock)
   {
     float nearest[kRowBlock];
-    std::copy_n(base + std::size_t{ 1 } * rows[0] * size + begin, kRowBlock, nearest);
-    if (!this->useArrays)
+    float error[kRowBlock] = {};
+    std::copy_n(this->squares.data() + begin, kRowBlock, nearest);
+    if (this->useArrays)
     {
-      for (int k = 1; k < count; ++k)
-      {
-        const float* row = base + std::size_t{ 1 } * rows[k] * size + begin;
-        for (int i = 0; i < kRowBlock; ++i)
-        {
-          nearest[i] = row[i] < nearest[i] ? row[i] : nearest[i];
-        }
-      }
+      std::copy_n(this->errors.data() + begin, kRowBlock, error);
     }
-    else
+    for (int k = 1; k < count; ++k)
     {
-      float error[kRowBlock];
-      std::copy_n(errorBase + std::size_t{ 1 } * rows[0] * size + begin, kRowBlock, error);
-      for (int k = 1; k < count; ++k)
+      const std::size_t at = std::size_t{ 1 } * k * size + begin;
+      const float* row = this->squares.data() + at;
+      if (this->useArrays)
       {
-        const float* row = base + std::size_t{ 1 } * rows[k] * size + begin;
-        const float* errorRow = errorBase + std::size_t{ 1 } * rows[k] * size + begin;
+        const float* errorRow = this->errors.data() + at;
         for (int i = 0; i < kRowBlock; ++i)
         {
-          const bool nearer = row[i] < nearest[i];
-          error[i] = nearer ? errorRow[i] : error[i];
-          nearest[i] = nearer ? row[i] : nearest[i];
+          error[i] = row[i] < nearest[i] ? errorRow[i] : error[i];
         }
       }
       for (int i = 0; i < kRowBlock; ++i)
       {
-        nearest[i] = error[i] > nearest[i] ? error[i] : nearest[i];
+        nearest[i] = row[i] < nearest[i] ? row[i] : nearest[i];
       }
     }
     for (int i = 0; i < kRowBlock; ++i)
     {
-      largest = nearest[i] > largest ? nearest[i] : largest;
-    }
-    if (largest > limit)
-    {
-      return HUGE_VAL;
+      const float worse = error[i] > nearest[i] ? error[i] : nearest[i];
+      largest = worse > largest ? worse : largest;
     }
   }
   return largest;
 }
 
-// Compare one triangulation with the best so far.
-void DeviationCriterion::Internals::offer(
-  const Triple* triangles, const int* rows, int count, double shape, double reverse)
+// Measure a triangulation, and keep it if it is the best so far.
+void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulation& filling)
 {
-  const double shapeTerm = kShapeWeight * this->radius * (1.0 - shape);
-  const double room = this->best.score - shapeTerm;
-  if (!(room > 0.0))
+  double square = this->fixedSquare;
+  double shape = 1.0;
+  grow(this->squares, std::size_t{ 1 } * filling.count * this->sampleRows.size);
+  grow(this->errors, this->useArrays ? this->squares.size() : 0);
+  for (int t = 0; t < filling.count; ++t)
   {
-    return;
+    const Triple& triangle = filling.triangles[t];
+    const Candidate candidate = hole.size <= kMaximumCompared
+      ? this->candidates[tripleNumber(triangle[0], triangle[1], triangle[2])]
+      : this->judge(hole, triangle);
+    if (!candidate.valid)
+    {
+      return;
+    }
+    shape = std::min(shape, candidate.shape);
+    for (int c = 0; c < 3; ++c)
+    {
+      const int i = std::min(triangle[c], triangle[nextCorner(c)]);
+      const int j = std::max(triangle[c], triangle[nextCorner(c)]);
+      if (!this->isRingEdge(hole, i, j))
+      {
+        square = std::max<double>(square,
+          hole.size <= kMaximumCompared ? this->crossings[pairNumber(i, j)]
+                                        : this->crossingSquare(hole, i, j));
+      }
+    }
   }
-  const double limit = room * room;
-  double square = std::max(this->fixedSquare, reverse);
-  if (!(square < limit))
+  for (int t = 0; t < filling.count; ++t)
   {
-    return;
+    this->fillRow(hole, filling.triangles[t], t);
   }
-  square = std::max(square, this->sampleSquare(rows, count, limit));
-  const double score = std::sqrt(square) + shapeTerm;
-  if (!(score < this->best.score))
+  square = std::max(square, this->sampleSquare(filling.count));
+  const double score = std::sqrt(square) + this->shapeTerm(shape);
+  if (score < this->best.score)
   {
-    return;
-  }
-  this->best.found = true;
-  this->best.score = score;
-  this->best.square = square;
-  this->best.shape = shape;
-  this->best.filling.count = count;
-  for (int k = 0; k < count; ++k)
-  {
-    this->best.filling.triangles[k] = triangles[k];
-    this->best.rows[k] = rows[k];
+    this->best.found = true;
+    this->best.score = score;
+    this->best.square = square;
+    this->best.filling = filling;
+    this->assign(filling);
   }
 }
 
-void DeviationCriterion::Internals::compareListed(const Hole& hole)
+// The best of all triangulations of a small hole.
+void DeviationCriterion::Internals::compareAll(const Hole& hole)
 {
-  const PolygonTriangulations& all = PolygonTriangulations::of(hole.size);
-  const std::vector<Triple>& triangles = all.triangles();
-  this->candidates.resize(triangles.size());
-  for (std::size_t k = 0; k < triangles.size(); ++k)
+  this->judgeAll(hole);
+  this->measureCandidates(hole);
+  HoleTriangulation filling;
+  if (this->chooseTriangulation(hole, filling))
   {
-    this->candidates[k] = this->judge(hole, triangles[k]);
-  }
-  this->probe(hole, triangles);
-  const int size = this->sampleRows.size;
-  this->squares.resize(std::size_t{ 1 } * triangles.size() * size);
-  this->errors.resize(this->useArrays ? this->squares.size() : 0);
-  std::array<bool, 84> filled{};
-  const int each = all.trianglesEach();
-  for (int i = 0; i < all.count(); ++i)
-  {
-    const unsigned char* set = all.triangulation(i);
-    double shape = 1.0;
-    double reverse = 0.0;
-    bool valid = true;
-    for (int k = 0; k < each && valid; ++k)
-    {
-      const Candidate& candidate = this->candidates[set[k]];
-      valid = candidate.valid;
-      shape = std::min(shape, candidate.shape);
-      reverse = std::max<double>(reverse, candidate.reverse);
-    }
-    const double room = this->best.score - kShapeWeight * this->radius * (1.0 - shape);
-    if (!valid || !(room > 0.0) || !(reverse < room * room))
-    {
-      continue;
-    }
-    std::array<Triple, kMaximumListedPolygon> chosen;
-    std::array<int, kMaximumListedPolygon> rows;
-    for (int k = 0; k < each; ++k)
-    {
-      rows[k] = set[k];
-      chosen[k] = triangles[set[k]];
-      if (!filled[set[k]])
-      {
-        filled[set[k]] = true;
-        this->fillRow(hole, chosen[k], rows[k]);
-      }
-    }
-    this->offer(chosen.data(), rows.data(), each, shape, reverse);
+    this->offer(hole, filling);
   }
 }
 
-// Ear cutting and some fans.
-void DeviationCriterion::Internals::compareLarge(const Hole& hole)
+// Ear cutting and some fans of a large hole.
+void DeviationCriterion::Internals::compareSome(const Hole& hole)
 {
-  std::vector<Triple> triangles;
-  const auto compare = [&]() {
-    this->candidates.resize(triangles.size());
-    double shape = 1.0;
-    for (std::size_t k = 0; k < triangles.size(); ++k)
-    {
-      this->candidates[k] = this->judge(hole, triangles[k]);
-      if (!this->candidates[k].valid)
-      {
-        return;
-      }
-      shape = std::min(shape, this->candidates[k].shape);
-    }
-    this->probe(hole, triangles);
-    double reverse = 0.0;
-    std::array<int, kMaximumPatchCells> rows;
-    this->squares.resize(triangles.size() * this->sampleRows.size);
-    this->errors.resize(this->useArrays ? this->squares.size() : 0);
-    for (std::size_t k = 0; k < triangles.size(); ++k)
-    {
-      reverse = std::max<double>(reverse, this->candidates[k].reverse);
-      rows[k] = static_cast<int>(k);
-      this->fillRow(hole, triangles[k], rows[k]);
-    }
-    const double before = this->best.score;
-    this->offer(triangles.data(), rows.data(), static_cast<int>(triangles.size()), shape, reverse);
-    if (this->best.score < before)
-    {
-      // The rows will be overwritten by the next candidate.
-      this->assign(this->best.filling);
-    }
-  };
-
   EarCutting ears(this->ring.data(), hole.size, this->normal);
   HoleTriangulation filling;
   if (ears.cut([&](int i, int j) { return !this->forbidden[i][j]; }, filling))
   {
-    triangles.assign(filling.triangles.begin(), filling.triangles.begin() + filling.count);
-    compare();
+    this->offer(hole, filling);
   }
   const int stride = (hole.size + kMaximumFans - 1) / kMaximumFans;
   for (int apex = 0; apex < hole.size; apex += stride)
   {
-    triangles.clear();
+    filling.count = 0;
     for (int k = 1; k + 1 < hole.size; ++k)
     {
       const auto at = [&](int offset) {
         return static_cast<unsigned char>((apex + offset) % hole.size);
       };
-      triangles.push_back({ at(0), at(k), at(k + 1) });
+      filling.triangles[filling.count++] = { at(0), at(k), at(k + 1) };
     }
-    compare();
+    this->offer(hole, filling);
   }
 }
 
-// The triangle of the best filling that each removed node is nearest to.
+// The triangle of a triangulation that each sample is nearest to.
 void DeviationCriterion::Internals::assign(const HoleTriangulation& filling)
 {
   const int size = this->sampleRows.size;
   const int nodes = static_cast<int>(this->sampleNodes.size());
-  this->assignment.assign(nodes + 1, 0);
-  for (int s = -1; s < nodes; ++s)
+  this->assignment.assign(nodes, 0);
+  for (int s = 0; s < nodes; ++s)
   {
-    const int sample = s < 0 ? 0 : this->firstNodeSample + s;
-    float nearest = kInfinity;
-    for (int k = 0; k < filling.count; ++k)
+    float nearest = this->squares[s];
+    for (int t = 1; t < filling.count; ++t)
     {
-      const float square =
-        this->squares[std::size_t{ 1 } * this->best.rows[k] * size + sample];
+      const float square = this->squares[std::size_t{ 1 } * t * size + s];
       if (square < nearest)
       {
         nearest = square;
-        this->assignment[s + 1] = static_cast<unsigned char>(k);
+        this->assignment[s] = static_cast<unsigned char>(t);
       }
     }
   }
@@ -708,21 +874,16 @@ bool DeviationCriterion::Internals::findBest(const Hole& hole)
     }
     this->best.found = true;
     this->best.square = square;
-    this->best.shape = 1.0;
     this->best.filling.count = 0;
     return true;
   }
-  if (hole.size <= kMaximumListedPolygon)
+  if (hole.size <= kMaximumCompared)
   {
-    this->compareListed(hole);
-    if (this->best.found)
-    {
-      this->assign(this->best.filling);
-    }
+    this->compareAll(hole);
   }
   else
   {
-    this->compareLarge(hole);
+    this->compareSome(hole);
   }
   return this->best.found;
 }
@@ -814,13 +975,11 @@ void DeviationCriterion::removed(
   {
     in.topology.triangle(triangleOf(hole.corners[i])).first = kNone;
   }
-  const int nodes = static_cast<int>(in.sampleNodes.size());
-  for (int s = -1; s < nodes; ++s)
+  for (std::size_t s = 0; s < in.sampleNodes.size(); ++s)
   {
-    const Index node = s < 0 ? hole.node : in.sampleNodes[s];
-    const Index slot = filling.count == 0
-      ? triangleOf(hole.outer[0])
-      : triangleOf(hole.corners[in.assignment[s + 1]]);
+    const Index node = in.sampleNodes[s];
+    const Index slot = triangleOf(
+      filling.count == 0 ? hole.outer[0] : hole.corners[in.assignment[s]]);
     Index& first = in.topology.triangle(slot).first;
     in.next[node] = first;
     first = node;

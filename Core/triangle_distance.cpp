@@ -33,17 +33,13 @@ bool DistanceTriangle::set(const Vector& a, const Vector& b, const Vector& c)
     const double length = std::sqrt(dot(along, along));
     along = (1.0 / length) * along;
     const Vector inwards = cross(n, along);
-    Edge& edge = this->edges[k];
-    edge.along[0] = static_cast<float>(along.x);
-    edge.along[1] = static_cast<float>(along.y);
-    edge.along[2] = static_cast<float>(along.z);
-    edge.start = static_cast<float>(dot(along, from));
-    edge.inwards[0] = static_cast<float>(inwards.x);
-    edge.inwards[1] = static_cast<float>(inwards.y);
-    edge.inwards[2] = static_cast<float>(inwards.z);
-    edge.side = static_cast<float>(dot(inwards, from));
-    edge.length = static_cast<float>(length);
-    edge.inverseHeight = static_cast<float>(length / area);
+    this->edges[k] = { { static_cast<float>(along.x), static_cast<float>(along.y),
+                         static_cast<float>(along.z) },
+      static_cast<float>(dot(along, from)),
+      { static_cast<float>(inwards.x), static_cast<float>(inwards.y),
+        static_cast<float>(inwards.z) },
+      static_cast<float>(dot(inwards, from)), static_cast<float>(length),
+      static_cast<float>(length / area) };
   }
   this->normal[0] = static_cast<float>(n.x);
   this->normal[1] = static_cast<float>(n.y);
@@ -104,17 +100,6 @@ void fillSquares(const DistanceTriangle& triangle, const float* __restrict__ x,
   }
 }
 
-UNDECIMATE_VECTOR_CLONES
-void lowerSquares(const DistanceTriangle& triangle, const float* __restrict__ x,
-  const float* __restrict__ y, const float* __restrict__ z, int size, float* __restrict__ squares)
-{
-  const DistanceTriangle t = triangle;
-  for (int i = 0; i < size; ++i)
-  {
-    squares[i] = smaller(squares[i], squaredDistance(t, x[i], y[i], z[i]));
-  }
-}
-
 inline float fractionAlong(const DistanceTriangle::Edge& edge, float x, float y, float z)
 {
   const float along = (inProduct(edge.along, x, y, z) - edge.start) / edge.length;
@@ -159,15 +144,93 @@ void DistanceTriangle::squaredDistances(const PointRows& points, float* squares)
   fillSquares(*this, points.x, points.y, points.z, points.size, squares);
 }
 
-void DistanceTriangle::lowerSquaredDistances(const PointRows& points, float* squares) const
-{
-  lowerSquares(*this, points.x, points.y, points.z, points.size, squares);
-}
-
 void DistanceTriangle::closestPoints(
   const PointRows& points, float* squares, float* weightB, float* weightC) const
 {
   fillClosest(*this, points.x, points.y, points.z, points.size, squares, weightB, weightC);
+}
+
+UNDECIMATE_VECTOR_CLONES
+void project(const PointRows& points, const Vector& axisX, const Vector& axisY,
+  float* __restrict__ x, float* __restrict__ y)
+{
+  const float ux = static_cast<float>(axisX.x);
+  const float uy = static_cast<float>(axisX.y);
+  const float uz = static_cast<float>(axisX.z);
+  const float vx = static_cast<float>(axisY.x);
+  const float vy = static_cast<float>(axisY.y);
+  const float vz = static_cast<float>(axisY.z);
+  for (int i = 0; i < points.size; ++i)
+  {
+    x[i] = ux * points.x[i] + uy * points.y[i] + uz * points.z[i];
+    y[i] = vx * points.x[i] + vy * points.y[i] + vz * points.z[i];
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void sidesOfLine(const float* __restrict__ x, const float* __restrict__ y, int size, float dx,
+  float dy, float offset, float* __restrict__ sides)
+{
+  for (int i = 0; i < size; ++i)
+  {
+    sides[i] = dx * y[i] - dy * x[i] - offset;
+  }
+}
+
+namespace
+{
+
+UNDECIMATE_VECTOR_CLONES
+void largestHeights(const PointRows& points, const float* n, float offset, const SideRows& sides,
+  float* __restrict__ largest)
+{
+  for (int begin = 0; begin < points.size; begin += kRowBlock)
+  {
+    for (int k = 0; k < kRowBlock; ++k)
+    {
+      const int i = begin + k;
+      const float height = inProduct(n, points.x[i], points.y[i], points.z[i]) - offset;
+      const float inside = smaller(smaller(sides.ab[i], sides.bc[i]), -sides.ac[i]);
+      const float square = inside >= 0.0F ? height * height : 0.0F;
+      largest[k] = larger(largest[k], square);
+    }
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void largestExtras(
+  int size, const SideRows& sides, const float* __restrict__ extra, float* __restrict__ largest)
+{
+  for (int begin = 0; begin < size; begin += kRowBlock)
+  {
+    for (int k = 0; k < kRowBlock; ++k)
+    {
+      const int i = begin + k;
+      const float inside = smaller(smaller(sides.ab[i], sides.bc[i]), -sides.ac[i]);
+      largest[k] = larger(largest[k], inside >= 0.0F ? extra[i] : 0.0F);
+    }
+  }
+}
+
+} // namespace
+
+float largestSquaredHeight(const PointRows& points, const Vector& normal, double offset,
+  const SideRows& sides, const float* extra)
+{
+  const float n[3] = { static_cast<float>(normal.x), static_cast<float>(normal.y),
+    static_cast<float>(normal.z) };
+  float largest[kRowBlock] = {};
+  largestHeights(points, n, static_cast<float>(offset), sides, largest);
+  if (extra)
+  {
+    largestExtras(points.size, sides, extra, largest);
+  }
+  float result = 0.0F;
+  for (const float square : largest)
+  {
+    result = larger(result, square);
+  }
+  return result;
 }
 
 } // namespace undecimate

@@ -47,9 +47,6 @@ public:
   /// squares[i] = squared distance of point i.
   void squaredDistances(const PointRows& points, float* squares) const;
 
-  /// squares[i] = min(squares[i], squared distance of point i).
-  void lowerSquaredDistances(const PointRows& points, float* squares) const;
-
   /// As squaredDistances(), and the weights of corners b and c at the closest point.
   void closestPoints(const PointRows& points, float* squares, float* weightB, float* weightC) const;
 
@@ -66,6 +63,27 @@ public:
   float normal[3];
   float height;
 };
+
+/// Coordinates of points along two axes.
+void project(const PointRows& points, const Vector& axisX, const Vector& axisY, float* x, float* y);
+
+/// sides[i] = dx y[i] - dy x[i] - offset: positive on the left of a line along (dx, dy).
+void sidesOfLine(const float* x, const float* y, int size, float dx, float dy, float offset,
+  float* sides);
+
+/// Sides of points against the three edges of a triangle a, b, c: on the left of a-b and of b-c, on
+/// the right of a-c.
+struct SideRows
+{
+  const float* ab;
+  const float* bc;
+  const float* ac;
+};
+
+/// The largest of (normal . point - offset)^2, and of extra[i] (may be null), over the points inside;
+/// 0 if there are none. Points on an edge are inside.
+float largestSquaredHeight(const PointRows& points, const Vector& normal, double offset,
+  const SideRows& sides, const float* extra);
 
 } // namespace undecimate
 
