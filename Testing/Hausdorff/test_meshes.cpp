@@ -81,6 +81,10 @@ TestMesh makeGrid(int n)
 
 TestMesh readMesh(const std::string& name, const std::string& file, const std::string& array)
 {
+  if (!std::ifstream(file).good())
+  {
+    throw std::runtime_error(file + ": no such file");
+  }
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
@@ -89,7 +93,7 @@ TestMesh readMesh(const std::string& name, const std::string& file, const std::s
   mesh.name = name;
   if (data->GetNumberOfPolys() == 0)
   {
-    throw std::runtime_error(file + ": no cells");
+    throw std::runtime_error(file + ": no cells, or this VTK cannot read it");
   }
   for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
   {
@@ -134,9 +138,7 @@ std::string dataFile(const std::string& name)
 std::string developmentFile(const std::string& name)
 {
   const char* folder = std::getenv("UNDECIMATE_DATA");
-  const std::string file =
-    (folder != nullptr ? std::string(folder)
-                       : std::string(UNDECIMATE_SOURCE_DIR) + "/../shared/data") +
+  return (folder != nullptr ? std::string(folder)
+                            : std::string(UNDECIMATE_SOURCE_DIR) + "/../shared/data") +
     "/" + name;
-  return std::ifstream(file).good() ? file : std::string();
 }

@@ -41,7 +41,7 @@ TestMesh readMesh(const std::string& name, const std::string& file, const std::s
 std::string dataFile(const std::string& name);
 
 /// Path of a file of the development data ($UNDECIMATE_DATA, else ../shared/data beside the
-/// repository), or empty if it is not there.
+/// repository); it need not be there.
 std::string developmentFile(const std::string& name);
 
 #endif
