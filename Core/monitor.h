@@ -8,6 +8,7 @@
 #define UNDECIMATE_CORE_MONITOR_H
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <utility>
 
@@ -17,9 +18,9 @@ namespace undecimate
 /// The one object through which the core reports progress and hears cancel.
 ///
 /// The core calls update() with a fraction that never decreases and ends at 1. The host's callback
-/// runs in the thread of the core call, at most about two hundred times a call, and returns false
-/// to cancel. cancel() may be called from any thread. A monitor may be used for one call after the
-/// other; reset() forgets an earlier cancellation.
+/// runs in the thread of the core call, at each half per cent and otherwise twenty times a second, and
+/// returns false to cancel. cancel() may be called from any thread. A monitor may be used for one call
+/// after the other; reset() forgets an earlier cancellation.
 class Monitor
 {
 public:
@@ -49,9 +50,15 @@ public:
   bool update(double fraction)
   {
     const double done = this->progress_;
-    if (fraction - done >= 0.005 || (fraction >= 1.0 && done < 1.0))
+    const Clock::time_point now = Clock::now();
+    const bool further = fraction - done >= 0.005 || (fraction >= 1.0 && done < 1.0);
+    if (further || now - this->asked_ >= std::chrono::milliseconds(50))
     {
-      this->progress_ = fraction > 1.0 ? 1.0 : fraction;
+      this->asked_ = now;
+      if (fraction > done)
+      {
+        this->progress_ = fraction > 1.0 ? 1.0 : fraction;
+      }
       if (this->callback_ && !this->callback_(this->progress_))
       {
         this->cancelled_ = true;
@@ -61,7 +68,10 @@ public:
   }
 
 private:
+  using Clock = std::chrono::steady_clock;
+
   Callback callback_;
+  Clock::time_point asked_ = Clock::now();
   std::atomic<bool> cancelled_{ false };
   std::atomic<double> progress_{ 0.0 };
 };
