@@ -4,6 +4,7 @@
 #include "undecimateArrays.h"
 
 #include "fingerprint.h"
+#include "undecimateMemory.h"
 
 #include "vtkBitArray.h"
 #include "vtkCellArray.h"
@@ -167,29 +168,42 @@ void visitCells(vtkCellArray* cells, Work&& work)
   }
 }
 
-template <class ArrayType>
-typename ArrayType::ValueType* resize(ArrayType* array, vtkIdType values)
+// Give an array room for its tuples.
+void setTuples(vtkAbstractArray* array, vtkIdType tuples, ArrayMemory* memory)
 {
-  array->SetNumberOfValues(values);
-  if (array->GetNumberOfValues() != values)
+  if (memory && isBlock(array))
+  {
+    memory->allocate(array, tuples);
+  }
+  else
+  {
+    array->SetNumberOfTuples(tuples);
+  }
+  if (array->GetNumberOfTuples() != tuples)
   {
     throw std::bad_alloc();
   }
+}
+
+template <class ArrayType>
+typename ArrayType::ValueType* resize(ArrayType* array, vtkIdType values, ArrayMemory* memory)
+{
+  setTuples(array, values, memory);
   return array->GetPointer(0);
 }
 
 template <class ArrayType>
-void fillTriangles(vtkCellArray* cells, const Index* corners, vtkIdType count)
+void fillTriangles(vtkCellArray* cells, const Index* corners, vtkIdType count, ArrayMemory* memory)
 {
   using Value = typename ArrayType::ValueType;
   vtkNew<ArrayType> offsets;
   vtkNew<ArrayType> connectivity;
-  Value* offset = resize(offsets.Get(), count + 1);
+  Value* offset = resize(offsets.Get(), count + 1, memory);
   for (vtkIdType i = 0; i <= count; ++i)
   {
     offset[i] = static_cast<Value>(3 * i);
   }
-  Value* corner = resize(connectivity.Get(), 3 * count);
+  Value* corner = resize(connectivity.Get(), 3 * count, memory);
   for (vtkIdType i = 0; i < 3 * count; ++i)
   {
     corner[i] = corners[i];
@@ -204,11 +218,11 @@ void fillMapped(vtkCellArray* cells, const Offset* offsets, const Offset* connec
   using Value = typename ArrayType::ValueType;
   vtkNew<ArrayType> newOffsets;
   vtkNew<ArrayType> newConnectivity;
-  Value* offset = resize(newOffsets.Get(), count + 1);
+  Value* offset = resize(newOffsets.Get(), count + 1, nullptr);
   std::transform(
     offsets, offsets + count + 1, offset, [](Offset o) { return static_cast<Value>(o); });
   const vtkIdType size = static_cast<vtkIdType>(offsets[count]);
-  Value* corner = resize(newConnectivity.Get(), size);
+  Value* corner = resize(newConnectivity.Get(), size, nullptr);
   std::transform(connectivity, connectivity + size, corner, [map](Offset p) { return map[p]; });
   cells->SetData(newOffsets.Get(), newConnectivity.Get());
 }
@@ -304,7 +318,7 @@ void describe(vtkAbstractArray* array, vtkAbstractArray* like)
 
 } // namespace
 
-ArrayPointer newLike(vtkAbstractArray* like, vtkIdType tuples)
+ArrayPointer newLike(vtkAbstractArray* like, vtkIdType tuples, ArrayMemory* memory)
 {
   const bool writable = !vtkDataArray::SafeDownCast(like) || isBlock(like) ||
     like->GetDataType() == VTK_BIT ||
@@ -312,11 +326,7 @@ ArrayPointer newLike(vtkAbstractArray* like, vtkIdType tuples)
   ArrayPointer array = ArrayPointer::Take(
     writable ? like->NewInstance() : vtkAbstractArray::CreateArray(like->GetDataType()));
   describe(array, like);
-  array->SetNumberOfTuples(tuples);
-  if (array->GetNumberOfTuples() != tuples)
-  {
-    throw std::bad_alloc();
-  }
+  setTuples(array, tuples, memory);
   return array;
 }
 
@@ -337,9 +347,9 @@ ArrayPointer share(vtkAbstractArray* values, vtkAbstractArray* like)
 }
 
 ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType leading,
-  const Index* numbers, vtkIdType count)
+  const Index* numbers, vtkIdType count, ArrayMemory* memory)
 {
-  ArrayPointer to = newLike(like, leading + count);
+  ArrayPointer to = newLike(like, leading + count, memory);
   if (isBlock(from) && isBlock(to))
   {
     const std::size_t size = tupleBytes(from);
@@ -352,10 +362,10 @@ ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType le
   return to;
 }
 
-ArrayPointer join(
-  vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest, vtkIdType restCount)
+ArrayPointer join(vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest,
+  vtkIdType restCount, ArrayMemory* memory)
 {
-  ArrayPointer to = newLike(base, baseCount + restCount);
+  ArrayPointer to = newLike(base, baseCount + restCount, memory);
   if (isBlock(base) && isBlock(to) && (restCount == 0 || isBlock(rest)))
   {
     const std::size_t size = tupleBytes(base);
@@ -374,7 +384,7 @@ ArrayPointer join(
 ArrayPointer scatter(vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest,
   vtkIdType restCount, const Index* order)
 {
-  ArrayPointer to = newLike(base, baseCount + restCount);
+  ArrayPointer to = newLike(base, baseCount + restCount, nullptr);
   if (isBlock(base) && isBlock(to) && (restCount == 0 || isBlock(rest)))
   {
     const std::size_t size = tupleBytes(base);
@@ -501,16 +511,17 @@ TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount)
   return result;
 }
 
-vtkSmartPointer<vtkCellArray> makeTriangles(const Index* corners, vtkIdType count, bool wide)
+vtkSmartPointer<vtkCellArray> makeTriangles(
+  const Index* corners, vtkIdType count, bool wide, ArrayMemory* memory)
 {
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   if (wide)
   {
-    fillTriangles<vtkCellArray::ArrayType64>(cells, corners, count);
+    fillTriangles<vtkCellArray::ArrayType64>(cells, corners, count, memory);
   }
   else
   {
-    fillTriangles<vtkCellArray::ArrayType32>(cells, corners, count);
+    fillTriangles<vtkCellArray::ArrayType32>(cells, corners, count, memory);
   }
   return cells;
 }

@@ -31,22 +31,25 @@ namespace filters
 
 using ArrayPointer = vtkSmartPointer<vtkAbstractArray>;
 
+class ArrayMemory;
+
 /// An array that is described as `like` (type, name, component names, information and look-up
 /// table), with `tuples` tuples whose values are not set.
-ArrayPointer newLike(vtkAbstractArray* like, vtkIdType tuples);
+/// @param memory where plain arrays get their memory from; null: from the system
+ArrayPointer newLike(vtkAbstractArray* like, vtkIdType tuples, ArrayMemory* memory);
 
 /// The values of an array (in the same memory where VTK can), described by `like`.
 ArrayPointer share(vtkAbstractArray* values, vtkAbstractArray* like);
 
 /// The first `leading` tuples of `from`, then tuple leading + numbers[i] for each i < count;
-/// described by `like`.
+/// described by `like`. `memory` as for newLike().
 ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType leading,
-  const Index* numbers, vtkIdType count);
+  const Index* numbers, vtkIdType count, ArrayMemory* memory = nullptr);
 
 /// The first `baseCount` tuples of `base`, then the first `restCount` tuples of `rest`.
-/// `rest` may be null if restCount is 0. Described by `base`.
-ArrayPointer join(
-  vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest, vtkIdType restCount);
+/// `rest` may be null if restCount is 0. Described by `base`. `memory` as for newLike().
+ArrayPointer join(vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest,
+  vtkIdType restCount, ArrayMemory* memory = nullptr);
 
 /// The tuples of join(base, baseCount, rest, restCount), tuple i at place order[i].
 ArrayPointer scatter(vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray* rest,
@@ -82,7 +85,9 @@ TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount);
 /// A cell array of triangles.
 /// @param corners 3 * count point numbers
 /// @param wide 64-bit storage, else 32-bit
-vtkSmartPointer<vtkCellArray> makeTriangles(const Index* corners, vtkIdType count, bool wide);
+/// @param memory as for newLike()
+vtkSmartPointer<vtkCellArray> makeTriangles(
+  const Index* corners, vtkIdType count, bool wide, ArrayMemory* memory = nullptr);
 
 /// The same cells with each point number p replaced by map[p]; storage width as asked.
 vtkSmartPointer<vtkCellArray> mapPoints(vtkCellArray* cells, const Index* map, bool wide);

@@ -63,7 +63,8 @@ std::string UndecimatedMesh::open(vtkPolyData* coarse)
   return {};
 }
 
-void UndecimatedMesh::show(vtkPolyData* coarse, Index steps, vtkPolyData* output)
+void UndecimatedMesh::show(
+  vtkPolyData* coarse, Index steps, vtkPolyData* output, ArrayMemory& memory)
 {
   if (steps != this->cursor_.steps())
   {
@@ -81,7 +82,7 @@ void UndecimatedMesh::show(vtkPolyData* coarse, Index steps, vtkPolyData* output
   }
   if (!this->shown_)
   {
-    this->shown_ = this->prefix(coarse);
+    this->shown_ = this->prefix(coarse, memory);
   }
   output->ShallowCopy(this->shown_);
 }
@@ -109,24 +110,26 @@ ArrayPointer UndecimatedMesh::originalPointIds() const
 }
 
 // A level below 1: prefixes of the arrays in record order.
-vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse) const
+vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse, ArrayMemory& memory) const
 {
   const RecordFields& record = this->record_;
   const Index base = record.view.baseNodeCount;
   const Index back = this->cursor_.steps();
   auto mesh = vtkSmartPointer<vtkPolyData>::New();
-  mesh->SetPoints(makePoints(join(coarse->GetPoints()->GetData(), base, record.points, back)));
+  mesh->SetPoints(
+    makePoints(join(coarse->GetPoints()->GetData(), base, record.points, back, &memory)));
   mesh->SetVerts(coarse->GetVerts());
   mesh->SetLines(coarse->GetLines());
   mesh->SetPolys(makeTriangles(
-    this->cursor_.cells(), this->cursor_.cellCount(), record.header[kWidePolys] != 0));
+    this->cursor_.cells(), this->cursor_.cellCount(), record.header[kWidePolys] != 0, &memory));
 
   vtkPointData* pointData = coarse->GetPointData();
   std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
   for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
   {
     const int place = record.pointArrays[i];
-    arrays[place] = join(pointData->GetAbstractArray(place), base, record.pointData[i], back);
+    arrays[place] =
+      join(pointData->GetAbstractArray(place), base, record.pointData[i], back, &memory);
   }
   setArrays(mesh->GetPointData(), pointData, arrays);
 
@@ -138,7 +141,7 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse) const
     vtkAbstractArray* described = cellData->GetAbstractArray(record.cellArrays[i]);
     arrays[record.cellArrays[i]] = record.cellData[i]
       ? gather(record.cellData[i], described, leading, this->cursor_.sources(),
-          this->cursor_.cellCount())
+          this->cursor_.cellCount(), &memory)
       : ArrayPointer(described);
   }
   setArrays(mesh->GetCellData(), cellData, arrays);

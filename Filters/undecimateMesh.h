@@ -7,6 +7,7 @@
 #ifndef undecimateMesh_h
 #define undecimateMesh_h
 
+#include "undecimateMemory.h"
 #include "undecimateRecordFields.h"
 
 #include "undecimation.h"
@@ -48,14 +49,15 @@ public:
   /// Arrays are shared between calls that ask for the same level.
   /// @param coarse the mesh that was opened, unchanged
   /// @param steps removed nodes that are back, 0 to cursor().stepCount()
-  void show(vtkPolyData* coarse, Index steps, vtkPolyData* output);
+  /// @param memory of the arrays
+  void show(vtkPolyData* coarse, Index steps, vtkPolyData* output, ArrayMemory& memory);
 
   /// Original number of each point of the level shown last: array kOriginalPointIds.
   ArrayPointer originalPointIds() const;
 
 private:
   bool atLevelOne() const { return this->cursor_.steps() == this->cursor_.stepCount(); }
-  vtkSmartPointer<vtkPolyData> prefix(vtkPolyData* coarse) const;
+  vtkSmartPointer<vtkPolyData> prefix(vtkPolyData* coarse, ArrayMemory& memory) const;
   vtkSmartPointer<vtkPolyData> original(vtkPolyData* coarse) const;
 
   RecordFields record_;

@@ -27,6 +27,7 @@ vtkStandardNewMacro(vtkUndecimation);
 struct vtkUndecimation::Internals
 {
   PipelinePass Pass;
+  ArrayMemory Memory;
   UndecimatedMeshCache Meshes;
 };
 
@@ -43,6 +44,7 @@ int vtkUndecimation::ProcessRequest(
 {
   if (this->Private->Pass.starts(request, inputVector[0]))
   {
+    this->Private->Memory.startPass();
     this->Private->Meshes.startPass();
     this->NumberOfNodes = 0;
     this->NumberOfTriangles = 0;
@@ -70,7 +72,7 @@ int vtkUndecimation::RequestData(
       mesh->show(input,
         this->LevelBy == BY_NODES ? cursor.stepsForLevel(this->Level)
                                   : cursor.stepsForError(this->MaximumError),
-        output);
+        output, this->Private->Memory);
       output->GetFieldData()->Initialize();
       passFieldData(input->GetFieldData(), output->GetFieldData());
       if (this->OriginalPointIds)

