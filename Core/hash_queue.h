@@ -9,6 +9,7 @@
 #ifndef UNDECIMATE_CORE_HASH_QUEUE_H
 #define UNDECIMATE_CORE_HASH_QUEUE_H
 
+#include "large_array.h"
 #include "types.h"
 
 #include <cstring>
@@ -130,7 +131,7 @@ private:
     Index first;
     Index last;
   };
-  std::vector<Links> links_;
+  LargeArray<Links> links_;
   std::vector<Ends> ends_;
   std::vector<std::uint64_t> bits_[4]; // bits_[0]: a bit an interval; above: a bit a non-zero word
   Index intervalCount_;
@@ -176,18 +177,21 @@ inline void HashQueue::insert(Index node, Index interval)
 
 inline void HashQueue::remove(Index node)
 {
-  const Links links = this->links_[node];
-  if (links.interval == kNone)
+  Links& links = this->links_[node];
+  const Index interval = links.interval;
+  if (interval == kNone)
   {
     return;
   }
-  this->links_[node].interval = kNone;
-  Ends& ends = this->ends_[links.interval];
-  (links.previous == kNone ? ends.first : this->links_[links.previous].next) = links.next;
-  (links.next == kNone ? ends.last : this->links_[links.next].previous) = links.previous;
+  const Index next = links.next;
+  const Index previous = links.previous;
+  links.interval = kNone;
+  Ends& ends = this->ends_[interval];
+  (previous == kNone ? ends.first : this->links_[previous].next) = next;
+  (next == kNone ? ends.last : this->links_[next].previous) = previous;
   if (ends.first == kNone)
   {
-    this->unmark(links.interval);
+    this->unmark(interval);
   }
   --this->size_;
 }

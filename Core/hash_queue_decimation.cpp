@@ -260,6 +260,7 @@ private:
         this->points_.prefetch(ringNode);
         this->criterion_.prefetch(ringNode);
         queue.prefetch(ringNode);
+        __builtin_prefetch(&this->kept_[ringNode]);
       });
     }
   }

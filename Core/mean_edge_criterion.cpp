@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace undecimate
 {
@@ -17,7 +16,7 @@ MeanEdgeCriterion::MeanEdgeCriterion(const TriangleTopology& topology, const Mes
   : topology_(topology)
   , points_(points)
   , array_(array)
-  , kept_(kept)
+  , scalar_(array && array->components == 1)
   , nodes_(kept.size())
 {
   const Index nodeCount = static_cast<Index>(kept.size());
@@ -26,7 +25,7 @@ MeanEdgeCriterion::MeanEdgeCriterion(const TriangleTopology& topology, const Mes
     keepNonFinite(*array, kept);
     const ArrayRange range = arrayRange(*array, nodeCount);
     this->scale_ = range.size > 0.0 ? 1.0 / range.size : 0.0;
-    if (array->components == 1)
+    if (this->scalar_)
     {
       for (Index i = 0; i < nodeCount; ++i)
       {
@@ -51,9 +50,8 @@ MeanEdgeCriterion::MeanEdgeCriterion(const TriangleTopology& topology, const Mes
   }
 }
 
-std::int64_t MeanEdgeCriterion::quantity(Index a, Index b) const
+std::int64_t MeanEdgeCriterion::otherQuantity(Index a, Index b) const
 {
-  constexpr auto kWhole = static_cast<std::int64_t>(kUnit);
   if (!this->array_)
   {
     const Vector edge = this->points_[b] - this->points_[a];
@@ -62,12 +60,6 @@ std::int64_t MeanEdgeCriterion::quantity(Index a, Index b) const
     return std::isfinite(angle) ? std::llround(angle * (kUnit / std::acos(0.0))) : kWhole;
   }
   const int components = this->array_->components;
-  if (components == 1)
-  {
-    const std::int32_t valueA = this->nodes_[a].value;
-    const std::int32_t valueB = this->nodes_[b].value;
-    return valueA < 0 || valueB < 0 ? kWhole : std::abs(valueA - valueB);
-  }
   const float* valuesA = this->array_->values + std::size_t{ 1 } * components * a;
   const float* valuesB = this->array_->values + std::size_t{ 1 } * components * b;
   double square = 0.0;
@@ -139,7 +131,9 @@ void MeanEdgeCriterion::removed(
 {
   for (int i = 0; i < hole.size; ++i)
   {
-    this->addEdge(hole.node, hole.ring[i], -1);
+    Node& neighbour = this->nodes_[hole.ring[i]];
+    neighbour.sum -= this->quantity(hole.node, hole.ring[i]);
+    --neighbour.edges;
   }
   const int last = hole.size - 1;
   for (int t = 0; t < filling.count; ++t)
@@ -149,10 +143,9 @@ void MeanEdgeCriterion::removed(
     {
       const int from = triangle[c];
       const int to = triangle[nextCorner(c)];
-      // Ring edges were there; a diagonal is met from both sides, the new boundary edge from one.
-      const bool ringEdge = to == from + 1 || (from == last && to == 0 && !hole.boundary);
-      const bool closing = from == last && to == 0;
-      if (!ringEdge && (from < to || closing))
+      // A diagonal is met from both sides, and added when it leads upwards; the edges of the ring
+      // were there but for the one that closes it at the boundary.
+      if (to > from + 1 || (hole.boundary && from == last && to == 0))
       {
         this->addEdge(hole.ring[from], hole.ring[to], 1);
       }

@@ -13,9 +13,11 @@
 #ifndef UNDECIMATE_CORE_MEAN_EDGE_CRITERION_H
 #define UNDECIMATE_CORE_MEAN_EDGE_CRITERION_H
 
+#include "large_array.h"
 #include "mesh_points.h"
 #include "triangle_topology.h"
 
+#include <cstdlib>
 #include <vector>
 
 namespace undecimate
@@ -51,23 +53,33 @@ public:
 
 private:
   static constexpr double kUnit = 1 << 30;
+  static constexpr auto kWhole = static_cast<std::int64_t>(kUnit);
 
   struct Node
   {
     std::int64_t sum = 0;
     std::int32_t edges = 0;
-    std::int32_t value = 0; // of a scalar, in units of 2^-30 of its range
+    std::int32_t value = 0; // of a scalar, in units of 2^-30 of its range; -1 = not finite
   };
 
-  std::int64_t quantity(Index a, Index b) const;
+  std::int64_t quantity(Index a, Index b) const
+  {
+    return this->scalar_ ? this->scalarDifference(this->nodes_[a].value, this->nodes_[b].value)
+                         : this->otherQuantity(a, b);
+  }
+  static std::int64_t scalarDifference(std::int32_t a, std::int32_t b)
+  {
+    return a < 0 || b < 0 ? kWhole : std::abs(a - b);
+  }
+  std::int64_t otherQuantity(Index a, Index b) const;
   void addEdge(Index a, Index b, int sign);
 
   const TriangleTopology& topology_;
   const MeshPoints& points_;
   const NodalArrayView* array_;
-  const std::vector<unsigned char>& kept_;
+  bool scalar_;
   double scale_ = 0.0; // of a vector array: 1 / range
-  std::vector<Node> nodes_;
+  LargeArray<Node> nodes_;
 };
 
 } // namespace undecimate

@@ -3,6 +3,8 @@
 
 #include "record.h"
 
+#include "large_array.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -205,7 +207,7 @@ Outcome checkSources(const Index* sources, std::int64_t count, Index cellCount, 
 struct RecordOrder
 {
   std::vector<Index> order;    // original number at each position
-  std::vector<Index> position; // and the other way round
+  LargeArray<Index> position; // and the other way round
 
   RecordOrder(Index count, const std::vector<Index>& comingBack)
     : order(count)

@@ -29,7 +29,7 @@ void TriangleTopology::connect()
 {
   const Index triangleCount = static_cast<Index>(this->triangles_.size());
   const std::size_t nodeCount = this->nodes_.size();
-  std::vector<Index> begin(nodeCount + 1, 0);
+  LargeArray<Index> begin(nodeCount + 1, 0);
   const auto smaller = [](const Triangle& t, int c) {
     return std::min(t.nodes[nextCorner(c)], t.nodes[previousCorner(c)]);
   };
@@ -49,9 +49,9 @@ void TriangleTopology::connect()
     Index larger;
     Corner corner;
   };
-  std::vector<Edge> edges(std::size_t{ 3 } * triangleCount);
+  LargeArray<Edge> edges(std::size_t{ 3 } * triangleCount);
   {
-    std::vector<Index> fill(begin.begin(), begin.end() - 1);
+    LargeArray<Index> fill(begin.begin(), begin.end() - 1);
     for (Index i = 0; i < triangleCount; ++i)
     {
       const Triangle& t = this->triangles_[i];
@@ -134,7 +134,7 @@ void TriangleTopology::markDegenerate()
 void TriangleTopology::markNodes()
 {
   const std::size_t nodeCount = this->nodes_.size();
-  std::vector<Index> uses(nodeCount, 0);
+  LargeArray<Index> uses(nodeCount, 0);
   std::vector<unsigned char> open(nodeCount, 0); // fans' ends: boundary edges that leave the node
   for (Index i = 0; i < static_cast<Index>(this->triangles_.size()); ++i)
   {
@@ -333,57 +333,59 @@ void TriangleTopology::replace(
       makeCorner(triangleOf(outer), previousCorner(cornerOf(outer)));
     this->nodes_[hole.ring[1]].corner = makeCorner(triangleOf(outer), nextCorner(cornerOf(outer)));
   }
-  // Diagonals waiting for their other side: at most size - 3.
-  struct Waiting
-  {
-    int from;
-    int to;
-    Corner corner;
-  };
-  std::array<Waiting, kMaximumPatchCells> waiting;
-  int waitingCount = 0;
+  // Diagonals waiting for their other side: at most size - 3. Two arrays, not one of structures: the
+  // last one is moved soon after it was written, and a copy of it in one piece would have to wait.
+  std::array<int, kMaximumPatchCells> waitingEdges;
+  std::array<Corner, kMaximumPatchCells> waitingCorners;
+  int waiting = 0;
+  const auto edgeOf = [](int from, int to) { return from << 8 | to; };
   const int last = hole.size - 1;
   for (int i = 0; i < filling.count; ++i)
   {
     const Index s = slot(i);
+    const auto& corners = filling.triangles[i];
     Triangle& t = this->triangles_[s];
     for (int c = 0; c < 3; ++c)
     {
-      t.nodes[c] = hole.ring[filling.triangles[i][c]];
+      t.nodes[c] = hole.ring[corners[c]];
       this->nodes_[t.nodes[c]].corner = makeCorner(s, c);
     }
-  }
-  for (int i = 0; i < filling.count; ++i)
-  {
-    const Index s = slot(i);
     for (int c = 0; c < 3; ++c)
     {
-      const int from = filling.triangles[i][nextCorner(c)];
-      const int to = filling.triangles[i][previousCorner(c)];
+      const int from = corners[nextCorner(c)];
+      const int to = corners[previousCorner(c)];
       const Corner here = makeCorner(s, c);
-      if (to == from + 1 || (from == last && to == 0))
+      if (to == from + 1)
       {
-        const bool closing = hole.boundary && from == last;
-        link(here, closing ? kNoCorner : hole.outer[from]);
-        if (closing)
+        link(here, hole.outer[from]);
+        continue;
+      }
+      if (from == last && to == 0)
+      {
+        link(here, hole.boundary ? kNoCorner : hole.outer[from]);
+        if (hole.boundary)
         {
           this->meet(hole.ring[from], hole.ring[to]);
         }
         continue;
       }
       int w = 0;
-      while (w < waitingCount && !(waiting[w].from == to && waiting[w].to == from))
+      while (w < waiting && waitingEdges[w] != edgeOf(to, from))
       {
         ++w;
       }
-      if (w < waitingCount)
+      if (w < waiting)
       {
-        link(here, waiting[w].corner);
-        waiting[w] = waiting[--waitingCount];
+        link(here, waitingCorners[w]);
+        --waiting;
+        waitingEdges[w] = waitingEdges[waiting];
+        waitingCorners[w] = waitingCorners[waiting];
       }
       else
       {
-        waiting[waitingCount++] = { from, to, here };
+        waitingEdges[waiting] = edgeOf(from, to);
+        waitingCorners[waiting] = here;
+        ++waiting;
         this->meet(hole.ring[from], hole.ring[to]);
       }
     }

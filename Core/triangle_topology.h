@@ -7,6 +7,7 @@
 #ifndef UNDECIMATE_CORE_TRIANGLE_TOPOLOGY_H
 #define UNDECIMATE_CORE_TRIANGLE_TOPOLOGY_H
 
+#include "large_array.h"
 #include "record.h"
 #include "types.h"
 
@@ -200,8 +201,8 @@ private:
   void markDegenerate();
   void markNodes();
 
-  std::vector<Triangle> triangles_;
-  std::vector<Node> nodes_;
+  LargeArray<Triangle> triangles_;
+  LargeArray<Node> nodes_;
 };
 
 } // namespace undecimate
