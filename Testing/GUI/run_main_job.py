@@ -119,6 +119,7 @@ def write_script(mesh, expected, output):
         script.slide(percent)
         script.apply()
         script.check_counts(*expected[f"{percent / 100:g}"])
+        script.check_results(*expected[f"{percent / 100:g}"])
     script.screenshot(output / "level_1.png")
     script.slide(0)
     script.apply()

@@ -156,8 +156,25 @@ def test_pipeline_fixture_changes_every_default(pipeline):
 
 def counts(proxy):
     proxy.UpdatePipeline()
-    proxy.UpdatePropertyInformation()
     return int(proxy.NumberOfNodes), int(proxy.NumberOfTriangles), float(proxy.Error)
+
+
+def test_results_follow_each_update(pipeline):
+    """Without a call of UpdatePropertyInformation(), which ParaView itself would need."""
+    decimation, undecimation = pipeline
+    undecimation.LevelBy = "Nodes"
+    nodes = []
+    for level in 0.0, 1.0, 0.5:
+        undecimation.Level = level
+        nodes.append(counts(undecimation)[0])
+        assert nodes[-1] == undecimation.GetDataInformation().GetNumberOfPoints()
+    assert nodes[0] < nodes[2] < nodes[1]
+    before = decimation.NumberOfTriangles
+    decimation.TargetReduction = 0.4
+    decimation.TargetNodes = decimation.TargetTriangles = 0
+    undecimation.UpdatePipeline()
+    assert before < decimation.NumberOfTriangles
+    assert decimation.StopReason == "target reduction"
 
 
 def test_state_file_keeps_values_and_results(pipeline, tmp_path):
