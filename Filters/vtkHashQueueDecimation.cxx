@@ -325,7 +325,12 @@ bool vtkHashQueueDecimation::Decimate(
 {
   MeshInput view;
   require(view.read(mesh));
-  const std::vector<std::string>& names = this->Private->Scalars;
+  std::vector<std::string> names = this->Private->Scalars;
+  // ParaView's Python names arrays of other filters as ['POINTS', name].
+  if (!names.empty() && names.front() == "POINTS" && !mesh->GetPointData()->HasArray("POINTS"))
+  {
+    names.erase(names.begin());
+  }
   if (this->Criterion == SCALAR_DIFFERENCE)
   {
     require(view.addArray(mesh, names.empty() ? std::string() : names.front()));

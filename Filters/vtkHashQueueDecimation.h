@@ -149,8 +149,9 @@ public:
   /**
    * Names of the point arrays that steer the decimation, of numbers with 1 to 9 components (vectors
    * are compared by the length of their difference). SCALAR_DIFFERENCE uses the first one, or the
-   * active point scalars when none is named; DEVIATION uses all. A name is added once. Default is
-   * none.
+   * active point scalars when none is named; DEVIATION uses all. A name is added once. A first name
+   * POINTS, as in ParaView's ['POINTS', 'stress'], is passed over unless there is such an array.
+   * Default is none.
    */
   void AddScalars(const char* name);
   void ClearScalars();
