@@ -63,8 +63,9 @@ def test_saved_by_paraview_and_undecimated_without_it(tmp_path):
     original = str(tmp_path / "original.vtp")
     coarse = str(tmp_path / "coarse.vtp")
     mesh_source = source(mesh)
-    simple.SaveData(original, proxy=mesh_source)
-    simple.SaveData(coarse, proxy=simple.HashQueueDecimation(Input=mesh_source))
+    simple.SaveData(original, proxy=mesh_source, DataMode="Binary")
+    decimation = simple.HashQueueDecimation(Input=mesh_source)
+    simple.SaveData(coarse, proxy=decimation, DataMode="Binary")
     done = subprocess.run(
         [PYTHON3, str(HERE / "undecimate_file.py"), coarse, original],
         capture_output=True,
@@ -91,7 +92,7 @@ def test_each_time_step_comes_back(tmp_path):
     meshes = [grid(time=time) for time in times]
     entries = []
     for i, (time, mesh) in enumerate(zip(times, meshes)):
-        simple.SaveData(str(tmp_path / f"step{i}.vtp"), proxy=source(mesh))
+        simple.SaveData(str(tmp_path / f"step{i}.vtp"), proxy=source(mesh), DataMode="Binary")
         entries.append(f'<DataSet timestep="{time}" file="step{i}.vtp"/>')
     (tmp_path / "steps.pvd").write_text(
         '<VTKFile type="Collection" version="0.1"><Collection>'
