@@ -53,29 +53,15 @@ void EarCutting::findEars()
   for (int i = 0; i < this->left_; ++i)
   {
     heights[i] = this->height(i);
-    this->convex_ = this->convex_ && heights[i] > 0.0;
+    if (!(heights[i] > 0.0))
+    {
+      this->reflex_[this->reflexCount_++] = i;
+    }
   }
   for (int i = 0; i < this->left_; ++i)
   {
     this->evaluate(i, heights[i]);
   }
-}
-
-// Whether no other corner lies in the triangle at corner i.
-bool EarCutting::isEmpty(int i) const
-{
-  const Point& a = this->points_[this->previous_[i]];
-  const Point& b = this->points_[i];
-  const Point& c = this->points_[this->next_[i]];
-  for (int k = this->next_[this->next_[i]]; k != this->previous_[i]; k = this->next_[k])
-  {
-    const Point& p = this->points_[k];
-    if (orientation(a, b, p) >= 0.0 && orientation(b, c, p) >= 0.0 && orientation(c, a, p) >= 0.0)
-    {
-      return false;
-    }
-  }
-  return true;
 }
 
 } // namespace undecimate

@@ -140,10 +140,31 @@ private:
     return base > 0.0 ? orientation(a, b, c) / base : 0.0;
   }
 
-  // What is left of a convex polygon is convex, and no corner lies in an ear.
   void evaluate(int i, double height)
   {
-    this->quality_[i] = height > kFlat && (this->convex_ || this->isEmpty(i)) ? height : kNotAnEar;
+    this->quality_[i] = height > kFlat && this->isEmpty(i) ? height : kNotAnEar;
+  }
+
+  // Whether no other corner lies in the triangle at corner i. If any does a reflex one does; a corner
+  // that was cut lies outside what is left.
+  bool isEmpty(int i) const
+  {
+    const int previous = this->previous_[i];
+    const int next = this->next_[i];
+    const Point& a = this->points_[previous];
+    const Point& b = this->points_[i];
+    const Point& c = this->points_[next];
+    for (int k = 0; k < this->reflexCount_; ++k)
+    {
+      const int corner = this->reflex_[k];
+      const Point& p = this->points_[corner];
+      if (corner != previous && corner != i && corner != next && orientation(a, b, p) >= 0.0 &&
+        orientation(b, c, p) >= 0.0 && orientation(c, a, p) >= 0.0)
+      {
+        return false;
+      }
+    }
+    return true;
   }
 
   int bestEar() const
@@ -183,12 +204,13 @@ private:
   }
 
   void findEars();
-  bool isEmpty(int i) const;
 
   std::array<Point, kCapacity> points_;
   std::array<double, kCapacity> quality_;
   std::array<int, kCapacity> previous_;
   std::array<int, kCapacity> next_;
+  std::array<int, kCapacity> reflex_; // corners that are not convex at first: none becomes so later
+  int reflexCount_ = 0;
   // Squared length of (x, y) in the true plane, over the ratio of a true area to a projected one:
   // xx x^2 + xy x y + yy y^2.
   double xx_;
@@ -196,7 +218,6 @@ private:
   double yy_;
   int left_;
   int anyLeft_ = 0;
-  bool convex_ = true;
 };
 
 } // namespace undecimate

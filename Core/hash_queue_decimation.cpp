@@ -175,6 +175,11 @@ public:
         tooCostly = true;
         continue;
       }
+      for (int i = 0; i < this->hole_.size; ++i)
+      {
+        queue.prefetch(this->hole_.ring[i]);
+        __builtin_prefetch(&this->kept_[this->hole_.ring[i]]);
+      }
       this->remove(builder, cost);
       // Step 6: re-evaluate the neighbours; they go to the end of their interval's queue.
       this->reevaluate(queue, intervals, interval);

@@ -37,6 +37,13 @@ public:
   {
   }
 
+  /// Elements without an initializer are left as they are: large arrays are filled by their owners.
+  template <typename Element>
+  void construct(Element* element)
+  {
+    ::new (static_cast<void*>(element)) Element;
+  }
+
   T* allocate(std::size_t count)
   {
     if (count > (std::numeric_limits<std::size_t>::max() - kHugePage) / sizeof(T))

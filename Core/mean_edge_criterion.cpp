@@ -100,6 +100,7 @@ bool MeanEdgeCriterion::retriangulate(
   for (int i = 0; i < hole.size; ++i)
   {
     ring[i] = this->points_[hole.ring[i]] - center;
+    this->prefetch(hole.ring[i]); // to be updated
   }
   Vector normal{ 0.0, 0.0, 0.0 };
   for (int i = 1; i < hole.size; ++i)

@@ -211,6 +211,7 @@ bool TriangleTopology::gather(Index node, Hole& hole) const
     const int c = cornerOf(corner);
     hole.corners[count] = corner;
     hole.ring[count] = t.nodes[nextCorner(c)];
+    this->prefetchNode(hole.ring[count]); // to be asked for edges
     hole.outer[count] = t.across[c];
     ++count;
     const Corner opposite = t.across[nextCorner(c)];
