@@ -82,6 +82,40 @@ TEST(Undecimation, LevelOneOfThePlateIsTheInputBitForBit)
   EXPECT_EQ(differences(undecimated(filter->GetOutput(), 1.0), plate), "");
 }
 
+// Arrays of several megabytes are written and kept in other ways than small ones.
+TEST(Undecimation, LevelsOfALargeMeshAreExact)
+{
+  for (const bool wide : { true, false })
+  {
+    MeshOptions options;
+    options.rows = 500;
+    options.wide = wide;
+    options.pointData = false;
+    options.cellData = false;
+    vtkSmartPointer<vtkPolyData> mesh = makeGrid(options);
+    vtkNew<vtkHashQueueDecimation> decimation;
+    decimation->SetInputData(mesh);
+    decimation->SetCriterionToAngleToXYPlane();
+    decimation->SetTargetReduction(0.99);
+    decimation->Update();
+    Undecimation filter;
+    filter->SetInputConnection(decimation->GetOutputPort());
+    for (const double level : { 0.9, 0.91, 0.9, 1.0 })
+    {
+      filter->SetLevel(level);
+      vtkPolyData* now = filter.output();
+      if (level < 1.0)
+      {
+        EXPECT_EQ(differences(now, undecimated(decimation->GetOutput(), level)), "");
+      }
+      else
+      {
+        EXPECT_EQ(differences(now, mesh), "");
+      }
+    }
+  }
+}
+
 TEST(Undecimation, LevelZeroIsTheCoarseMesh)
 {
   vtkSmartPointer<vtkPolyData> coarse = decimated(makeGrid());
