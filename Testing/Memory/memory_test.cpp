@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Bytes a node of the core's calls, counted in operator new: the same on every machine.
+// Bytes a node of the core's calls, counted in the C library's allocation functions.
 //
 //   memory_test [grid size]
 //
@@ -14,42 +14,54 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <vector>
+
+#include <malloc.h>
 
 namespace
 {
 std::size_t liveBytes = 0;
 std::size_t peakBytes = 0;
-constexpr std::size_t kHeader = alignof(std::max_align_t);
-}
 
-void* operator new(std::size_t size)
+void* counted(void* memory)
 {
-  void* block = std::malloc(size + kHeader);
-  if (!block)
-  {
-    throw std::bad_alloc();
-  }
-  *static_cast<std::size_t*>(block) = size;
-  liveBytes += size;
+  liveBytes += malloc_usable_size(memory); // 0 for null
   peakBytes = liveBytes > peakBytes ? liveBytes : peakBytes;
-  return static_cast<char*>(block) + kHeader;
+  return memory;
+}
 }
 
-void operator delete(void* memory) noexcept
+// The GNU C library's own functions, behind ours of the usual names.
+extern "C"
 {
-  if (memory)
+  void* __libc_malloc(std::size_t);
+  void* __libc_calloc(std::size_t, std::size_t);
+  void* __libc_realloc(void*, std::size_t);
+  void* __libc_memalign(std::size_t, std::size_t);
+  void __libc_free(void*);
+
+  void* malloc(std::size_t size)
   {
-    void* block = static_cast<char*>(memory) - kHeader;
-    liveBytes -= *static_cast<std::size_t*>(block);
-    std::free(block);
+    return counted(__libc_malloc(size));
   }
-}
-
-void operator delete(void* memory, std::size_t) noexcept
-{
-  operator delete(memory);
+  void* calloc(std::size_t count, std::size_t size)
+  {
+    return counted(__libc_calloc(count, size));
+  }
+  void* realloc(void* memory, std::size_t size)
+  {
+    liveBytes -= malloc_usable_size(memory);
+    return counted(__libc_realloc(memory, size));
+  }
+  void* aligned_alloc(std::size_t alignment, std::size_t size)
+  {
+    return counted(__libc_memalign(alignment, size));
+  }
+  void free(void* memory)
+  {
+    liveBytes -= malloc_usable_size(memory);
+    __libc_free(memory);
+  }
 }
 
 namespace
