@@ -3,6 +3,7 @@
 
 #include "deviation.h"
 
+#include "fold_rule.h"
 #include "triangle_distance.h"
 
 #include <algorithm>
@@ -18,15 +19,6 @@ namespace
 
 constexpr Vector kOrigin{ 0.0, 0.0, 0.0 };
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// A new triangle may not turn away from the old one on the same ring edge by more than this. A thin
-// one less: a needle across the surface is a fold, whatever its distance.
-constexpr double kMinimumCosine = 0.15;
-constexpr double kNeedleCosine = 0.9;
-constexpr double kNeedleShape = 0.1;
-
-// Below this shape (1 = equilateral) a triangle counts as degenerate.
-constexpr double kMinimumShape = 1e-4;
 
 // Among triangulations of nearly equal cost the better-shaped one wins: what a degenerate triangle
 // costs more than an equilateral one, as a fraction of the size of the hole.
@@ -135,12 +127,14 @@ struct DeviationCriterion::Internals
 {
   TriangleTopology& topology;
   const MeshPoints& points;
-  double inverseDiagonal = 0.0;
+  double unit = 0.0; // 1 / diagonal: distances are in diagonals from the start
 
-  // Nodal arrays: an error e of array k counts as the distance arrayScales[k] * e.
+  // Nodal arrays: an error e of array k counts as the distance arrayScales[k] * e. Holes at nodes
+  // where an array is undefined (NaN) stay open.
   const std::vector<NodalArrayView>& arrays;
   std::vector<double> arrayScales;
   bool useArrays = false;
+  std::vector<unsigned char> undefined; // empty if there is none
 
   // Nodes removed so far: a list for each triangle (its head is Triangle::first), and one for each
   // boundary edge (by its first node), if there is a boundary.
@@ -244,15 +238,27 @@ DeviationCriterion::DeviationCriterion(TriangleTopology& topology, const MeshPoi
   Internals& in = *this->internals_;
   const Index nodeCount = static_cast<Index>(kept.size());
   const double diagonal = diagonalOf(topology, points);
-  in.inverseDiagonal = diagonal > 0.0 ? 1.0 / diagonal : 0.0;
+  in.unit = diagonal > 0.0 ? 1.0 / diagonal : 0.0;
   if (scalarWeight > 0.0)
   {
     for (const NodalArrayView& array : arrays)
     {
-      keepNonFinite(array, kept);
       const double range = arrayRange(array, nodeCount).size;
-      in.arrayScales.push_back(range > 0.0 ? scalarWeight * diagonal / range : 0.0);
+      in.arrayScales.push_back(range > 0.0 ? scalarWeight / range : 0.0);
       in.useArrays = in.useArrays || range > 0.0;
+    }
+    in.undefined.assign(nodeCount, 0);
+    for (const NodalArrayView& array : arrays)
+    {
+      keepNonFinite(array, in.undefined);
+    }
+    for (Index node = 0; node < nodeCount; ++node)
+    {
+      kept[node] |= in.undefined[node];
+    }
+    if (std::find(in.undefined.begin(), in.undefined.end(), 1) == in.undefined.end())
+    {
+      in.undefined = {};
     }
   }
   in.next.assign(nodeCount, kNone);
@@ -280,7 +286,11 @@ bool DeviationCriterion::Internals::prepare(const Hole& hole)
   double square = 0.0;
   for (int i = 0; i < hole.size; ++i)
   {
-    this->ring[i] = this->points[hole.ring[i]] - center;
+    if (!this->undefined.empty() && this->undefined[hole.ring[i]])
+    {
+      return false;
+    }
+    this->ring[i] = this->unit * (this->points[hole.ring[i]] - center);
     square = std::max(square, dot(this->ring[i], this->ring[i]));
   }
   this->radius = std::sqrt(square);
@@ -311,7 +321,7 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
     for (Index node = this->topology.triangle(triangleOf(hole.corners[i])).first; node != kNone;
          node = this->next[node])
     {
-      this->samples.add(this->points[node] - center);
+      this->samples.add(this->unit * (this->points[node] - center));
       this->sampleNodes.push_back(node);
     }
   }
@@ -355,7 +365,7 @@ void DeviationCriterion::Internals::boundarySquare(const Hole& hole)
   {
     for (Index node = this->boundaryFirst[edge]; node != kNone; node = this->boundaryNext[node])
     {
-      measure(this->points[node] - center);
+      measure(this->unit * (this->points[node] - center));
     }
   }
 }
@@ -366,21 +376,11 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
 {
   Candidate candidate;
   const int last = hole.size - 1;
-  const Vector ab = this->ring[t[1]] - this->ring[t[0]];
-  const Vector ac = this->ring[t[2]] - this->ring[t[0]];
-  const Vector bc = ac - ab;
-  const Vector n = cross(ab, ac);
-  const double areaSquare = dot(n, n);
-  const double edges = dot(ab, ab) + dot(bc, bc) + dot(ac, ac);
-  if (!(areaSquare > kMinimumShape * kMinimumShape / 12.0 * edges * edges))
+  const FilledTriangle triangle(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
+  if (triangle.degenerate())
   {
     return candidate;
   }
-  const double area = std::sqrt(areaSquare);
-  candidate.shape = 2.0 * std::sqrt(3.0) * area / edges;
-  candidate.normal = (1.0 / area) * n;
-  const double minimumCosine = kMinimumCosine +
-    (kNeedleCosine - kMinimumCosine) * std::max(0.0, 1.0 - candidate.shape / kNeedleShape);
   bool onRing = false;
   for (int k = 0; k < 3; ++k)
   {
@@ -390,9 +390,7 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
     if (ringEdge)
     {
       onRing = true;
-      const Vector& old = this->oldNormals[from];
-      const double cosine = dot(candidate.normal, old);
-      if (!(cosine > 0.0 && cosine * cosine > minimumCosine * minimumCosine * dot(old, old)))
+      if (!triangle.follows(this->oldNormals[from]))
       {
         return candidate;
       }
@@ -402,11 +400,9 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
       return candidate;
     }
   }
-  if (!onRing && !(dot(candidate.normal, this->normal) > minimumCosine))
-  {
-    return candidate;
-  }
-  candidate.valid = true;
+  candidate.valid = onRing || triangle.follows(this->normal);
+  candidate.shape = triangle.shape();
+  candidate.normal = triangle.normal();
   return candidate;
 }
 
@@ -608,7 +604,7 @@ bool DeviationCriterion::Internals::chooseTriangulation(
 {
   std::array<double, kMaximumPairs> sums;
   std::array<unsigned char, kMaximumPairs> apexes;
-  const double unit = 1.0 / (this->radius * this->radius);
+  const double scale = 1.0 / (this->radius * this->radius);
   for (int span = 1; span < hole.size; ++span)
   {
     for (int i = 0; i + span < hole.size; ++i)
@@ -628,7 +624,7 @@ bool DeviationCriterion::Internals::chooseTriangulation(
         const double distance = std::max({ candidate.square, this->crossings[before],
           this->crossings[behind], this->crossings[here] });
         const double shape = this->shapeTerm(candidate.shape);
-        const double square = unit * (distance + shape * shape);
+        const double square = scale * (distance + shape * shape);
         const double sum = sums[before] + sums[behind] + square * square;
         if (sum < sums[here])
         {
@@ -870,7 +866,8 @@ bool DeviationCriterion::Internals::findBest(const Hole& hole)
     for (const Index node : this->sampleNodes)
     {
       square = std::max(square,
-        squaredDistanceToSegment(this->points[node] - center, this->ring[0], this->ring[1]));
+        squaredDistanceToSegment(
+          this->unit * (this->points[node] - center), this->ring[0], this->ring[1]));
     }
     this->best.found = true;
     this->best.square = square;
@@ -914,7 +911,7 @@ bool DeviationCriterion::Internals::forbidExisting(const Hole& hole)
 
 double DeviationCriterion::Internals::cost() const
 {
-  return std::sqrt(this->best.square) * this->inverseDiagonal;
+  return std::sqrt(this->best.square);
 }
 
 bool DeviationCriterion::evaluate(Index node, double& cost)

@@ -71,9 +71,9 @@ private:
 struct Goal
 {
   Index triangles = 0;
-  Index nodes = 0;
+  Index nodes = kNone; // no such goal
   StopReason triangleReason = StopReason::TargetReduction;
-  double error = std::numeric_limits<double>::infinity();
+  double error = 0.0;
 
   Goal(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options)
   {
@@ -85,12 +85,13 @@ struct Goal
       this->triangles = static_cast<Index>(std::min(options.targetTriangles, mesh.triangleCount));
       this->triangleReason = StopReason::TargetTriangles;
     }
-    this->nodes = static_cast<Index>(std::min(options.targetNodes, mesh.nodeCount));
-    const double noLimit = options.criterion == Criterion::AngleToXYPlane ? kRightAngle : 1.0;
-    if (options.maximumError < noLimit)
+    if (options.targetNodes > 0)
     {
-      this->error = options.maximumError / noLimit;
+      this->nodes = static_cast<Index>(std::min(options.targetNodes, mesh.nodeCount));
     }
+    this->error = options.criterion == Criterion::AngleToXYPlane
+      ? options.maximumError / kRightAngle
+      : options.maximumError;
   }
 };
 

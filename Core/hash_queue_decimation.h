@@ -17,6 +17,7 @@
 #include "monitor.h"
 #include "record.h"
 
+#include <limits>
 #include <vector>
 
 namespace undecimate
@@ -44,8 +45,8 @@ struct HashQueueDecimationOptions
   std::int64_t targetNodes = 0; ///< stop at this many nodes; 0 = off
   std::int64_t targetTriangles = 0; ///< stop at this many triangles; 0 = off
   /// Largest error: no step with a larger one is made. In the unit of the criterion (fraction of the
-  /// diagonal or of the range, or degrees); >= 1 (for angles >= 90) is no limit.
-  double maximumError = 1.0;
+  /// diagonal or of the range, or degrees); 0 or more, infinite = no limit.
+  double maximumError = std::numeric_limits<double>::infinity();
 
   IntervalSpacing intervalSpacing = IntervalSpacing::Logarithmic;
   /// k of [K03] eq. 1: mean number of nodes in an interval, > 0. Exponential spacing only.

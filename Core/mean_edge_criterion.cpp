@@ -4,6 +4,7 @@
 #include "mean_edge_criterion.h"
 
 #include "array_range.h"
+#include "fold_rule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,6 +83,46 @@ void MeanEdgeCriterion::addEdge(Index a, Index b, int sign)
   }
 }
 
+namespace
+{
+
+// The plane of a hole drifts from step to step, so what is right in the plane may still be a fold.
+bool isUnfolded(const Hole& hole, const Vector* ring, const Vector& normal,
+  const HoleTriangulation& filling)
+{
+  const int last = hole.size - 1;
+  for (int t = 0; t < filling.count; ++t)
+  {
+    const auto& corners = filling.triangles[t];
+    const FilledTriangle triangle(ring[corners[0]], ring[corners[1]], ring[corners[2]]);
+    if (triangle.degenerate())
+    {
+      return false;
+    }
+    bool onRing = false;
+    for (int c = 0; c < 3; ++c)
+    {
+      const int from = corners[c];
+      const int to = corners[nextCorner(c)];
+      if (to == from + 1 || (from == last && to == 0 && !hole.boundary))
+      {
+        onRing = true;
+        if (!triangle.follows(cross(ring[from], ring[to])))
+        {
+          return false;
+        }
+      }
+    }
+    if (!onRing && !triangle.follows(normal))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+} // namespace
+
 bool MeanEdgeCriterion::retriangulate(
   Index node, Hole& hole, HoleTriangulation& filling, double& cost)
 {
@@ -119,12 +160,13 @@ bool MeanEdgeCriterion::retriangulate(
     return false;
   }
   const int last = hole.size - 1;
-  return ears.cut(
+  const bool cut = ears.cut(
     [&](int i, int j) {
       const bool closing = hole.boundary && (i + j == last && (i == 0 || j == 0));
       return closing || !this->topology_.mayHaveEdge(hole.ring[i], hole.ring[j]);
     },
     filling);
+  return cut && isUnfolded(hole, ring.data(), normal, filling);
 }
 
 void MeanEdgeCriterion::removed(

@@ -49,13 +49,15 @@ public:
   /// For the core: report a fraction; false when the call has to stop.
   bool update(double fraction)
   {
-    const double done = this->progress_;
+    // Within a call fractions do not decrease, so a smaller one is the next call's.
+    const bool anew = fraction < this->progress_;
+    const double done = anew ? 0.0 : this->progress_.load();
     const Clock::time_point now = Clock::now();
     const bool further = fraction - done >= 0.005 || (fraction >= 1.0 && done < 1.0);
-    if (further || now - this->asked_ >= std::chrono::milliseconds(50))
+    if (further || anew || now - this->asked_ >= std::chrono::milliseconds(50))
     {
       this->asked_ = now;
-      if (fraction > done)
+      if (fraction > done || anew)
       {
         this->progress_ = fraction > 1.0 ? 1.0 : fraction;
       }

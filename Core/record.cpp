@@ -28,6 +28,34 @@ Outcome damaged(const char* array, std::int64_t entry, const char* why)
       why + "." };
 }
 
+Outcome checkPresence(const RecordView& record, const Index* baseCells)
+{
+  struct Array
+  {
+    const void* values;
+    std::int64_t size;
+    const char* name;
+  };
+  const Array arrays[] = { { record.nodeOrder, record.nodeCount, "NodeOrder" },
+    { record.cellOrder, record.cellCount, "CellOrder" },
+    { record.stepShapes, record.stepCount, "StepShapes" },
+    { record.stepErrors, record.stepCount, "StepErrors" },
+    { record.patches, record.patchSize, "Patches" },
+    { record.shapeOffsets, 1, "ShapeOffsets" }, { record.shapes, record.shapeCount, "Shapes" },
+    { record.baseSources, record.hasSources ? record.baseCellCount : 0, "BaseSources" },
+    { record.lostSources, record.hasSources ? record.lostSourceSize : 0, "LostSources" },
+    { baseCells, record.baseCellCount, "cells of the coarse mesh" } };
+  for (const Array& array : arrays)
+  {
+    if (!array.values && array.size > 0)
+    {
+      return { Status::InvalidRecord,
+        std::string("Record array '") + array.name + "' is missing." };
+    }
+  }
+  return {};
+}
+
 Outcome checkPermutation(const Index* order, Index count, const char* name)
 {
   std::vector<bool> seen(count, false);
@@ -276,6 +304,10 @@ Outcome validateRecord(const RecordView& record, const Index* baseCells)
     record.cornersPerCell != kCorners)
   {
     return { Status::InvalidRecord, "The record's counts contradict each other." };
+  }
+  if (Outcome o = checkPresence(record, baseCells); !o)
+  {
+    return o;
   }
   if (Outcome o = checkPermutation(record.nodeOrder, record.nodeCount, "NodeOrder"); !o)
   {

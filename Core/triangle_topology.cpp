@@ -302,6 +302,11 @@ bool TriangleTopology::fillsExistingTriangle(const Hole& hole) const
   {
     if (hole.outer[i] == kNoCorner)
     {
+      // Nothing is there, or triangles that are not connected across this edge: then do not risk it.
+      if (!this->isManifold(hole.ring[i]) && !this->isManifold(hole.ring[(i + 1) % hole.size]))
+      {
+        return true;
+      }
       continue;
     }
     const Triangle& t = this->triangles_[triangleOf(hole.outer[i])];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <string>
 
 namespace undecimate
 {
@@ -49,12 +50,7 @@ Outcome Undecimation::open(const RecordView& record, const Index* baseCells)
       return o;
     }
     this->cells_.resize(std::size_t{ kCorners } * record.cellCount);
-    std::copy_n(baseCells, std::size_t{ kCorners } * record.baseCellCount, this->cells_.begin());
-    if (record.hasSources)
-    {
-      this->sources_.resize(record.cellCount);
-      std::copy_n(record.baseSources, record.baseCellCount, this->sources_.begin());
-    }
+    this->sources_.resize(record.hasSources ? record.cellCount : 0);
   }
   catch (const std::bad_alloc&)
   {
@@ -62,8 +58,66 @@ Outcome Undecimation::open(const RecordView& record, const Index* baseCells)
     return { Status::OutOfMemory, "Not enough memory to open the record." };
   }
   this->record_ = record;
-  this->cellCount_ = record.baseCellCount;
+  this->standAtBase(baseCells);
+  // Whether the steps fit together shows only when they are walked.
+  while (this->steps_ < record.stepCount)
+  {
+    if (!this->isNextStepSound())
+    {
+      const Index step = this->steps_;
+      *this = Undecimation();
+      return { Status::InvalidRecord,
+        "Record array 'Patches' is damaged: step " + std::to_string(step) +
+          " does not fit the cells of its level." };
+    }
+    this->refine();
+  }
+  this->standAtBase(baseCells);
   return {};
+}
+
+void Undecimation::standAtBase(const Index* baseCells)
+{
+  std::copy_n(
+    baseCells, std::size_t{ kCorners } * this->record_.baseCellCount, this->cells_.begin());
+  if (this->record_.hasSources)
+  {
+    std::copy_n(this->record_.baseSources, this->record_.baseCellCount, this->sources_.begin());
+  }
+  this->steps_ = 0;
+  this->cellCount_ = this->record_.baseCellCount;
+  this->patchPosition_ = 0;
+  this->lostPosition_ = 0;
+}
+
+// Whether all new cells of the next step agree on what node a local number is. If they do not,
+// coarsen() would not undo refine(), and nodes could stay in levels that do not have them.
+bool Undecimation::isNextStepSound() const
+{
+  const Shape shape(this->record_, this->steps_);
+  const Index* slots = this->record_.patches + this->patchPosition_;
+  const Index* cells = this->cells_.data();
+  Index locals[256];
+  for (int i = 0; i < shape.newCount; ++i)
+  {
+    const Index* cell = cells + std::size_t{ kCorners } * slots[i];
+    for (int corner = 0; corner < kCorners; ++corner)
+    {
+      locals[shape.newCells[kCorners * i + corner]] = cell[corner];
+    }
+  }
+  for (int i = 0; i < shape.newCount; ++i)
+  {
+    const Index* cell = cells + std::size_t{ kCorners } * slots[i];
+    for (int corner = 0; corner < kCorners; ++corner)
+    {
+      if (locals[shape.newCells[kCorners * i + corner]] != cell[corner])
+      {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 void Undecimation::moveTo(Index steps)

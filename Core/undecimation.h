@@ -24,7 +24,9 @@ namespace undecimate
 class Undecimation
 {
 public:
-  /// Check the record and stand at level 0. The record's arrays must outlive the cursor's use.
+  /// Check the record and stand at level 0. The record's arrays must outlive the cursor's use. What
+  /// passes can be walked to any level and back, and no level refers to nodes that it does not have.
+  /// Complexity: O(record); walks it once.
   /// @param record the record
   /// @param baseCells the cells of the coarsest level, in record order; copied
   /// @return InvalidRecord, OutOfMemory or Ok; unless Ok the cursor is closed
@@ -61,6 +63,8 @@ public:
   const RecordView& record() const { return this->record_; }
 
 private:
+  void standAtBase(const Index* baseCells);
+  bool isNextStepSound() const;
   void refine();
   void coarsen();
 
