@@ -131,7 +131,7 @@ private:
     Index first;
     Index last;
   };
-  LargeArray<Links> links_;
+  LargeArray<Links, 3> links_;
   std::vector<Ends> ends_;
   std::vector<std::uint64_t> bits_[4]; // bits_[0]: a bit an interval; above: a bit a non-zero word
   Index intervalCount_;

@@ -7,6 +7,10 @@
 /// The nodes of a mesh are visited in an order that memory does not know. With pages of 4 KiB nearly
 /// every visit then waits for the address translation as well. Linux gives pages of 2 MiB to those
 /// who ask (madvise); other systems, and arrays that are not large, get ordinary memory.
+///
+/// Large blocks of memory all begin at the same place in a page. A processor that compares only this
+/// place lets a read of an array wait for a write to the same index of another one. So arrays that are
+/// used together get different shifts.
 
 #ifndef UNDECIMATE_CORE_LARGE_ARRAY_H
 #define UNDECIMATE_CORE_LARGE_ARRAY_H
@@ -25,15 +29,22 @@ namespace undecimate
 {
 
 /// An allocator for std::vector. Costs at most a huge page more than std::allocator.
-template <typename T>
+/// @tparam Shift 0 to 3: arrays of different shifts begin at different places in a page
+template <typename T, int Shift>
 class LargeArrayAllocator
 {
 public:
   using value_type = T;
 
+  template <typename Other>
+  struct rebind
+  {
+    using other = LargeArrayAllocator<Other, Shift>;
+  };
+
   LargeArrayAllocator() = default;
   template <typename Other>
-  LargeArrayAllocator(const LargeArrayAllocator<Other>&)
+  LargeArrayAllocator(const LargeArrayAllocator<Other, Shift>&)
   {
   }
 
@@ -46,15 +57,46 @@ public:
 
   T* allocate(std::size_t count)
   {
-    if (count > (std::numeric_limits<std::size_t>::max() - kHugePage) / sizeof(T))
+    if (count > (std::numeric_limits<std::size_t>::max() - kOffset - kHugePage) / sizeof(T))
     {
       throw std::bad_alloc();
     }
+    return reinterpret_cast<T*>(allocateBytes(byteSize(count)) + kOffset);
+  }
+
+  void deallocate(T* array, std::size_t count)
+  {
+    char* memory = reinterpret_cast<char*>(array) - kOffset;
 #ifdef __linux__
-    if (isLarge(count))
+    if (isLarge(byteSize(count)))
+    {
+      std::free(memory);
+      return;
+    }
+#endif
+    static_cast<void>(count);
+    ::operator delete(memory, std::align_val_t{ kCacheLine });
+  }
+
+  friend bool operator==(const LargeArrayAllocator&, const LargeArrayAllocator&) { return true; }
+  friend bool operator!=(const LargeArrayAllocator&, const LargeArrayAllocator&) { return false; }
+
+private:
+  static constexpr std::size_t kCacheLine = 64;
+  static constexpr std::size_t kHugePage = std::size_t{ 1 } << 21;
+  static constexpr std::size_t kOffset = Shift * 16 * kCacheLine; // quarters of the smallest page
+  static_assert(alignof(T) <= kCacheLine && Shift >= 0 && Shift < 4, "");
+
+  static std::size_t byteSize(std::size_t count) { return count * sizeof(T) + kOffset; }
+  static bool isLarge(std::size_t bytes) { return bytes >= 2 * kHugePage; }
+
+  static char* allocateBytes(std::size_t bytes)
+  {
+#ifdef __linux__
+    if (isLarge(bytes))
     {
       // Whole huge pages.
-      const std::size_t bytes = (count * sizeof(T) + kHugePage - 1) / kHugePage * kHugePage;
+      bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
       void* memory = std::aligned_alloc(kHugePage, bytes);
       if (!memory)
       {
@@ -62,35 +104,15 @@ public:
       }
       // Only advice: without huge pages the memory is as good as any.
       static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
-      return static_cast<T*>(memory);
+      return static_cast<char*>(memory);
     }
 #endif
-    return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t{ alignof(T) }));
+    return static_cast<char*>(::operator new(bytes, std::align_val_t{ kCacheLine }));
   }
-
-  void deallocate(T* memory, std::size_t count)
-  {
-#ifdef __linux__
-    if (isLarge(count))
-    {
-      std::free(memory);
-      return;
-    }
-#endif
-    static_cast<void>(count);
-    ::operator delete(memory, std::align_val_t{ alignof(T) });
-  }
-
-  friend bool operator==(const LargeArrayAllocator&, const LargeArrayAllocator&) { return true; }
-  friend bool operator!=(const LargeArrayAllocator&, const LargeArrayAllocator&) { return false; }
-
-private:
-  static constexpr std::size_t kHugePage = std::size_t{ 1 } << 21;
-  static bool isLarge(std::size_t count) { return count * sizeof(T) >= 2 * kHugePage; }
 };
 
-template <typename T>
-using LargeArray = std::vector<T, LargeArrayAllocator<T>>;
+template <typename T, int Shift = 0>
+using LargeArray = std::vector<T, LargeArrayAllocator<T, Shift>>;
 
 } // namespace undecimate
 

@@ -79,7 +79,7 @@ private:
   const NodalArrayView* array_;
   bool scalar_;
   double scale_ = 0.0; // of a vector array: 1 / range
-  LargeArray<Node> nodes_;
+  LargeArray<Node, 2> nodes_;
 };
 
 } // namespace undecimate

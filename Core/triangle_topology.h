@@ -202,7 +202,7 @@ private:
   void markNodes();
 
   LargeArray<Triangle> triangles_;
-  LargeArray<Node> nodes_;
+  LargeArray<Node, 1> nodes_;
 };
 
 } // namespace undecimate
