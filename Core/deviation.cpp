@@ -168,8 +168,8 @@ struct DeviationCriterion::Internals
   {
     bool valid = false;
     double shape = 0.0;
-    Vector normal;        // unit
-    float square = 0.0F;  // largest over the samples in it
+    Vector normal;       // unit
+    float square = 0.0F; // largest over the samples in it
   };
   std::array<Candidate, kMaximumTriples> candidates;
   std::array<float, kMaximumPairs> crossings; // of new edges, see crossingSquare()
@@ -209,6 +209,13 @@ struct DeviationCriterion::Internals
   void addSampleValues(const Hole& hole);
   void boundarySquare(const Hole& hole);
   Candidate judge(const Hole& hole, const Triple& t) const;
+  struct EdgePlace
+  {
+    Index from;
+    Index to;
+    double fraction; // of the edge; clamped
+  };
+  double arraySquare(const EdgePlace& p, const EdgePlace& q) const;
   float crossingSquare(const Hole& hole, int i, int j) const;
   bool isRingEdge(const Hole& hole, int i, int j) const
   {
@@ -231,8 +238,7 @@ struct DeviationCriterion::Internals
 };
 
 DeviationCriterion::DeviationCriterion(TriangleTopology& topology, const MeshPoints& points,
-  const std::vector<NodalArrayView>& arrays, double scalarWeight,
-  std::vector<unsigned char>& kept)
+  const std::vector<NodalArrayView>& arrays, double scalarWeight, std::vector<unsigned char>& kept)
   : internals_(std::make_unique<Internals>(topology, points, arrays))
 {
   Internals& in = *this->internals_;
@@ -356,9 +362,10 @@ void DeviationCriterion::Internals::boundarySquare(const Hole& hole)
   }
   const int last = hole.size - 1;
   const Vector center = this->points[hole.node];
-  const auto measure = [&](const Vector& p) {
-    this->fixedSquare = std::max(
-      this->fixedSquare, squaredDistanceToSegment(p, this->ring[last], this->ring[0]));
+  const auto measure = [&](const Vector& p)
+  {
+    this->fixedSquare =
+      std::max(this->fixedSquare, squaredDistanceToSegment(p, this->ring[last], this->ring[0]));
   };
   measure(kOrigin);
   for (const Index edge : { hole.node, hole.ring[last] })
@@ -406,6 +413,31 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
   return candidate;
 }
 
+// Squared error of the arrays between two places, the largest of them.
+double DeviationCriterion::Internals::arraySquare(const EdgePlace& p, const EdgePlace& q) const
+{
+  double largest = 0.0;
+  for (std::size_t n = 0; n < this->arrays.size(); ++n)
+  {
+    const NodalArrayView& array = this->arrays[n];
+    double sum = 0.0;
+    for (int component = 0; component < array.components; ++component)
+    {
+      const auto valueAt = [&](const EdgePlace& place)
+      {
+        const float* values = array.values + component;
+        const double from = values[std::size_t{ 1 } * array.components * place.from];
+        const double to = values[std::size_t{ 1 } * array.components * place.to];
+        return from + std::clamp(place.fraction, 0.0, 1.0) * (to - from);
+      };
+      const double difference = valueAt(p) - valueAt(q);
+      sum += difference * difference;
+    }
+    largest = std::max(largest, this->arrayScales[n] * this->arrayScales[n] * sum);
+  }
+  return largest;
+}
+
 // Where a new edge crosses the old ones its distance to the old surface has its extremes: two
 // surfaces of flat pieces are farthest apart at a node of one or at a crossing of their edges.
 float DeviationCriterion::Internals::crossingSquare(const Hole& hole, int i, int j) const
@@ -415,13 +447,21 @@ float DeviationCriterion::Internals::crossingSquare(const Hole& hole, int i, int
   // The old edges between i and j, or those of the other side, whichever lie across from the node.
   const bool nodeOnLeft = dot(cross(along, kOrigin - a), this->normal) >= 0.0;
   double largest = 0.0;
-  const auto measure = [&](int k) {
-    const Vector m = cross(along, this->ring[k]);
+  const auto measure = [&](int k)
+  {
+    const Vector& old = this->ring[k];
+    const Vector m = cross(along, old);
     const double square = dot(m, m);
     const double height = dot(a, m);
     if (height * height > largest * square)
     {
       largest = height * height / square;
+    }
+    if (this->useArrays && square > 0.0)
+    {
+      largest = std::max(largest,
+        this->arraySquare({ hole.ring[i], hole.ring[j], dot(cross(old, a), m) / square },
+          { hole.node, hole.ring[k], dot(cross(along, a), m) / square }));
     }
   };
   if (nodeOnLeft)
@@ -477,8 +517,8 @@ void DeviationCriterion::Internals::judgeAll(const Hole& hole)
 // triangle on the ring edge that it lies behind.
 void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
 {
-  const Vector axis = std::abs(this->normal.x) < 0.6 ? Vector{ 1.0, 0.0, 0.0 }
-                                                     : Vector{ 0.0, 1.0, 0.0 };
+  const Vector axis =
+    std::abs(this->normal.x) < 0.6 ? Vector{ 1.0, 0.0, 0.0 } : Vector{ 0.0, 1.0, 0.0 };
   Vector u = cross(axis, this->normal);
   u = (1.0 / std::sqrt(dot(u, u))) * u;
   this->axisX = u;
@@ -490,9 +530,8 @@ void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
   }
   grow(this->sides, std::size_t{ 1 } * kChunk * pairNumber(0, hole.size));
   static const std::array<float, kChunk> kInside{}; // on the line: inside on either side
-  const auto isOutline = [last = hole.size - 1](int i, int j) {
-    return j == i + 1 || (i == 0 && j == last);
-  };
+  const auto isOutline = [last = hole.size - 1](int i, int j)
+  { return j == i + 1 || (i == 0 && j == last); };
   for (int first = 0; first < this->sampleRows.size; first += kChunk)
   {
     const int count = std::min(kChunk, this->sampleRows.size - first);
@@ -525,7 +564,8 @@ void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
           {
             continue;
           }
-          const auto side = [&](int from, int to) -> const float* {
+          const auto side = [&](int from, int to) -> const float*
+          {
             return isOutline(from, to)
               ? kInside.data()
               : this->sides.data() + std::size_t{ 1 } * kChunk * pairNumber(from, to);
@@ -542,8 +582,8 @@ void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
   }
 }
 
-// Squared errors of the arrays over a candidate triangle: each component is a linear function of the
-// place in the plane.
+// Squared errors of the arrays over a candidate triangle: each component is a linear function of
+// the place in the plane.
 const float* DeviationCriterion::Internals::chunkErrors(
   const Hole& hole, const Triple& t, int first, int count)
 {
@@ -674,8 +714,7 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
   grow(this->weightB, size);
   grow(this->weightC, size);
   grow(this->sums, size);
-  triangle.closestPoints(
-    this->sampleRows, squareRow, this->weightB.data(), this->weightC.data());
+  triangle.closestPoints(this->sampleRows, squareRow, this->weightB.data(), this->weightC.data());
   float* __restrict__ errorRow = this->errors.data() + std::size_t{ 1 } * row * size;
   std::fill_n(errorRow, size, 0.0F);
   const float* __restrict__ wB = this->weightB.data();
@@ -709,8 +748,8 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
   }
 }
 
-// Largest over the samples of the squared distance to the nearest triangle, and of the arrays' error
-// there.
+// Largest over the samples of the squared distance to the nearest triangle, and of the arrays'
+// error there.
 double DeviationCriterion::Internals::sampleSquare(int count) const
 {
   const int size = this->sampleRows.size;
@@ -823,9 +862,8 @@ void DeviationCriterion::Internals::compareSome(const Hole& hole)
     filling.count = 0;
     for (int k = 1; k + 1 < hole.size; ++k)
     {
-      const auto at = [&](int offset) {
-        return static_cast<unsigned char>((apex + offset) % hole.size);
-      };
+      const auto at = [&](int offset)
+      { return static_cast<unsigned char>((apex + offset) % hole.size); };
       filling.triangles[filling.count++] = { at(0), at(k), at(k + 1) };
     }
     this->offer(hole, filling);
@@ -860,14 +898,21 @@ bool DeviationCriterion::Internals::findBest(const Hole& hole)
   this->best.score = HUGE_VAL;
   if (hole.size == 2)
   {
-    // The triangle at a corner of the boundary goes; what it had is measured to the edge that stays.
+    // The triangle at a corner of the boundary goes; what it had is measured to the edge that
+    // stays.
     double square = this->fixedSquare;
     const Vector center = this->points[hole.node];
+    const Vector along = this->ring[1] - this->ring[0];
     for (const Index node : this->sampleNodes)
     {
-      square = std::max(square,
-        squaredDistanceToSegment(
-          this->unit * (this->points[node] - center), this->ring[0], this->ring[1]));
+      const Vector place = this->unit * (this->points[node] - center);
+      square = std::max(square, squaredDistanceToSegment(place, this->ring[0], this->ring[1]));
+      if (this->useArrays)
+      {
+        const double fraction = dot(place - this->ring[0], along) / dot(along, along);
+        square = std::max(
+          square, this->arraySquare({ hole.ring[0], hole.ring[1], fraction }, { node, node, 0.0 }));
+      }
     }
     this->best.found = true;
     this->best.square = square;
@@ -964,8 +1009,7 @@ bool DeviationCriterion::retriangulate(
   return found;
 }
 
-void DeviationCriterion::removed(
-  const Hole& hole, const HoleTriangulation& filling)
+void DeviationCriterion::removed(const Hole& hole, const HoleTriangulation& filling)
 {
   Internals& in = *this->internals_;
   for (int i = 0; i < hole.triangleCount; ++i)
@@ -975,8 +1019,8 @@ void DeviationCriterion::removed(
   for (std::size_t s = 0; s < in.sampleNodes.size(); ++s)
   {
     const Index node = in.sampleNodes[s];
-    const Index slot = triangleOf(
-      filling.count == 0 ? hole.outer[0] : hole.corners[in.assignment[s]]);
+    const Index slot =
+      triangleOf(filling.count == 0 ? hole.outer[0] : hole.corners[in.assignment[s]]);
     Index& first = in.topology.triangle(slot).first;
     in.next[node] = first;
     first = node;

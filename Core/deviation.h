@@ -8,23 +8,24 @@
 ///   (a) the distance to the new triangles of the node, and of every node that was removed from the
 ///       hole's triangles before;
 ///   (b) the distance between each new edge and the old edges that it crosses;
-/// as a fraction of the diagonal of the bounding box. Two surfaces of flat pieces are farthest apart
-/// at a node of one of them or where two of their edges cross, so (a) and (b) see the whole change of
-/// a step. At the boundary also (c) the distance of the removed boundary nodes to the new boundary
-/// edge. A nodal array adds to each sample of (a) its error, |interpolated - value| / range, times a
-/// weight.
+/// as a fraction of the diagonal of the bounding box. Two surfaces of flat pieces are farthest
+/// apart at a node of one of them or where two of their edges cross, so (a) and (b) see the whole
+/// change of a step. At the boundary also (c) the distance of the removed boundary nodes to the new
+/// boundary edge. A nodal array is compared at the same places: its error, |interpolated - value| /
+/// range, times a weight, counts if it is larger.
 ///
-/// Holes of up to 16 nodes get the best of all triangulations: seen along the mean normal each sample
-/// lies in one triangle of any triangulation, so the triangles (20 for six nodes) are measured once,
-/// and dynamic programming finds the set with the least sum of the fourth powers of their costs, which
-/// is nearly the least largest one and keeps the others small. Larger holes compare ear cutting and
-/// fans. The cost of the triangulation that was chosen is then measured by nearest distances.
+/// Holes of up to 16 nodes get the best of all triangulations: seen along the mean normal each
+/// sample lies in one triangle of any triangulation, so the triangles (20 for six nodes) are
+/// measured once, and dynamic programming finds the set with the least sum of the fourth powers of
+/// their costs, which is nearly the least largest one and keeps the others small. Larger holes
+/// compare ear cutting and fans. The cost of the triangulation that was chosen is then measured by
+/// nearest distances.
 ///
 /// Refused are new triangles that turn away from the old ones on their ring edges, needles more
 /// strictly than others.
 ///
-/// Samples are relative to the removed node and in single precision; orientation is decided in double
-/// precision.
+/// Samples are relative to the removed node and in single precision; orientation is decided in
+/// double precision.
 
 #ifndef UNDECIMATE_CORE_DEVIATION_H
 #define UNDECIMATE_CORE_DEVIATION_H
