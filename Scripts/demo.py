@@ -131,7 +131,7 @@ def main(plugin, folder):
               f"{100 * row['stress_mean']:6.3f} %  {row['seconds']:6.3f} s {how}")
     print(f"""
 Hausdorff distance: two-sided, measured by samples, % of the bounding box's diagonal ({diagonal:.1f} mm).
-Stress error: against the original, between the nodes too, % of the range; at nodes it is zero.
+Stress error: against the original, at and between all its nodes, % of the range; at kept nodes it is zero.
 Time: {min(PERCENT):g} % is the decimation of the original; each other level is the undecimation from the one
 below it in the table. All come from one file of {progressive_bytes:,} bytes: the {min(PERCENT):g} % mesh with its record.
 """)
