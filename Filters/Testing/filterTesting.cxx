@@ -198,21 +198,21 @@ std::string cellDifferences(const char* what, vtkCellArray* a, vtkCellArray* b, 
   {
     text += std::string(what) + ": other storage width\n";
   }
-  vtkNew<vtkIdList> first;
-  vtkNew<vtkIdList> second;
-  for (vtkIdType cell = 0; cell < a->GetNumberOfCells(); ++cell)
+  if (a->GetNumberOfCells() == 0)
   {
-    a->GetCellAtId(cell, first);
-    b->GetCellAtId(cell, second);
-    bool same = first->GetNumberOfIds() == second->GetNumberOfIds();
-    for (vtkIdType i = 0; same && i < first->GetNumberOfIds(); ++i)
-    {
-      same = first->GetId(i) == second->GetId(i);
-    }
-    if (!same)
-    {
-      return text + what + ": cell " + std::to_string(cell) + " differs\n";
-    }
+    return text;
+  }
+  vtkNew<vtkCellArray> first;
+  vtkNew<vtkCellArray> second;
+  first->DeepCopy(a);
+  second->DeepCopy(b);
+  first->ConvertTo64BitStorage();
+  second->ConvertTo64BitStorage();
+  if (first->GetNumberOfConnectivityIds() != second->GetNumberOfConnectivityIds() ||
+    !sameValues(first->GetOffsetsArray(), second->GetOffsetsArray()) ||
+    !sameValues(first->GetConnectivityArray(), second->GetConnectivityArray()))
+  {
+    text += std::string(what) + ": other points\n";
   }
   return text;
 }
