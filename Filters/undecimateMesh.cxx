@@ -53,7 +53,10 @@ std::string UndecimatedMesh::open(vtkPolyData* coarse)
   std::vector<Index>().swap(this->record_.baseTriangles);
   if (!outcome)
   {
-    return outcome.message;
+    return outcome.message +
+      (outcome.status == Status::InvalidRecord
+          ? " Run Hash Queue Decimation again, or load an undamaged file."
+          : "");
   }
   const vtkIdType points = coarse->GetNumberOfPoints();
   if (!fits(coarse->GetVerts(), points) || !fits(coarse->GetLines(), points))
