@@ -127,6 +127,7 @@ struct DeviationCriterion::Internals
 {
   TriangleTopology& topology;
   const MeshPoints& points;
+  HeightFieldDirection heightField;
   double unit = 0.0; // 1 / diagonal: distances are in diagonals from the start
 
   // Nodal arrays: an error e of array k counts as the distance arrayScales[k] * e. Holes at nodes
@@ -200,6 +201,7 @@ struct DeviationCriterion::Internals
     const std::vector<NodalArrayView>& arrays_)
     : topology(topology_)
     , points(points_)
+    , heightField(topology_, points_)
     , arrays(arrays_)
   {
   }
@@ -384,7 +386,7 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
   Candidate candidate;
   const int last = hole.size - 1;
   const FilledTriangle triangle(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
-  if (triangle.degenerate())
+  if (triangle.degenerate() || !this->heightField.allows(triangle))
   {
     return candidate;
   }

@@ -6,12 +6,15 @@
 ///
 /// A new triangle may not turn away too far from the old one on the same ring edge, or, if it has no
 /// ring edge, from the mean normal of the hole. Needles may turn less: one that stands across the
-/// surface is a fold, however near it is.
+/// surface is a fold, however near it is. And a height field stays one: if all triangles of the input
+/// face the same way along an axis, so do all new ones.
 
 #ifndef UNDECIMATE_CORE_FOLD_RULE_H
 #define UNDECIMATE_CORE_FOLD_RULE_H
 
 #include "ear_cutting.h"
+#include "mesh_points.h"
+#include "triangle_topology.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,6 +72,61 @@ private:
   double shape_;
   double minimumCosine_ = 1.0;
   Vector normal_;
+};
+
+/// The direction along an axis that all triangles of a height field face.
+class HeightFieldDirection
+{
+public:
+  /// Looks at all triangles that have an area; most other meshes are told by their first few.
+  HeightFieldDirection(const TriangleTopology& topology, const MeshPoints& points)
+  {
+    bool facing[6] = { true, true, true, true, true, true };
+    bool any = false;
+    for (Index t = 0; t < topology.triangleCount(); ++t)
+    {
+      const auto& nodes = topology.triangle(t).nodes;
+      const Vector a = points[nodes[0]];
+      const Vector n = cross(points[nodes[1]] - a, points[nodes[2]] - a);
+      if (!(dot(n, n) > 0.0))
+      {
+        continue;
+      }
+      any = true;
+      const double along[6] = { n.x, -n.x, n.y, -n.y, n.z, -n.z };
+      bool left = false;
+      for (int i = 0; i < 6; ++i)
+      {
+        facing[i] = facing[i] && along[i] > 0.0;
+        left = left || facing[i];
+      }
+      if (!left)
+      {
+        return;
+      }
+    }
+    for (int i = 0; any && i < 6; ++i)
+    {
+      if (facing[i])
+      {
+        const double sign = i % 2 == 0 ? 1.0 : -1.0;
+        this->direction_ = { i < 2 ? sign : 0.0, i == 2 || i == 3 ? sign : 0.0, i > 3 ? sign : 0.0 };
+        this->known_ = true;
+      }
+    }
+  }
+
+  bool allows(const FilledTriangle& triangle) const
+  {
+    return !this->known_ || dot(triangle.normal(), this->direction_) > kSmallest;
+  }
+
+private:
+  // Of a unit normal's component: what is less is rounding.
+  static constexpr double kSmallest = 1e-9;
+
+  Vector direction_{ 0.0, 0.0, 0.0 };
+  bool known_ = false;
 };
 
 } // namespace undecimate

@@ -4,7 +4,6 @@
 #include "mean_edge_criterion.h"
 
 #include "array_range.h"
-#include "fold_rule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@ MeanEdgeCriterion::MeanEdgeCriterion(const TriangleTopology& topology, const Mes
   const NodalArrayView* array, std::vector<unsigned char>& kept)
   : topology_(topology)
   , points_(points)
+  , heightField_(topology, points)
   , array_(array)
   , scalar_(array && array->components == 1)
   , nodes_(kept.size())
@@ -88,14 +88,14 @@ namespace
 
 // The plane of a hole drifts from step to step, so what is right in the plane may still be a fold.
 bool isUnfolded(const Hole& hole, const Vector* ring, const Vector& normal,
-  const HoleTriangulation& filling)
+  const HoleTriangulation& filling, const HeightFieldDirection& heightField)
 {
   const int last = hole.size - 1;
   for (int t = 0; t < filling.count; ++t)
   {
     const auto& corners = filling.triangles[t];
     const FilledTriangle triangle(ring[corners[0]], ring[corners[1]], ring[corners[2]]);
-    if (triangle.degenerate())
+    if (triangle.degenerate() || !heightField.allows(triangle))
     {
       return false;
     }
@@ -166,7 +166,7 @@ bool MeanEdgeCriterion::retriangulate(
       return closing || !this->topology_.mayHaveEdge(hole.ring[i], hole.ring[j]);
     },
     filling);
-  return cut && isUnfolded(hole, ring.data(), normal, filling);
+  return cut && isUnfolded(hole, ring.data(), normal, filling, this->heightField_);
 }
 
 void MeanEdgeCriterion::removed(

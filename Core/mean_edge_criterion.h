@@ -14,6 +14,7 @@
 #define UNDECIMATE_CORE_MEAN_EDGE_CRITERION_H
 
 #include "large_array.h"
+#include "fold_rule.h"
 #include "mesh_points.h"
 #include "triangle_topology.h"
 
@@ -76,6 +77,7 @@ private:
 
   const TriangleTopology& topology_;
   const MeshPoints& points_;
+  HeightFieldDirection heightField_;
   const NodalArrayView* array_;
   bool scalar_;
   double scale_ = 0.0; // of a vector array: 1 / range
