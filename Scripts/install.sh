@@ -13,9 +13,9 @@ set -euo pipefail
 build="g++ cmake ninja-build paraview-dev python3-paraview libopenmpi-dev libeigen3-dev libxxhash-dev
   qtbase5-dev libqt5svg5"
 demo="$build xvfb xauth python3-numpy"
-# python3-pil reads the screenshots; the rest of the last line checks format and XML.
+# python3-pil reads the screenshots; the last line checks sources.
 test="$demo libgtest-dev libcgal-dev python3-pytest python3-pil
-  clang-format-14 libxml2-utils"
+  clang-format-14 clang-tidy-14 libxml2-utils"
 
 case "${1:-}" in
   build | demo | test) packages=${!1} ;;
