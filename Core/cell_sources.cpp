@@ -84,8 +84,8 @@ void findCellSources(const MeshPoints& points, const Hole& hole, const HoleTrian
   {
     normal = normal + cross(ring[i], ring[i + 1 == hole.size ? 0 : i + 1]);
   }
-  const Vector axis = std::abs(normal.x) < std::abs(normal.y) ? Vector{ 1.0, 0.0, 0.0 }
-                                                              : Vector{ 0.0, 1.0, 0.0 };
+  const Vector axis =
+    std::abs(normal.x) < std::abs(normal.y) ? Vector{ 1.0, 0.0, 0.0 } : Vector{ 0.0, 1.0, 0.0 };
   Vector u = cross(axis, normal);
   const double length = std::sqrt(dot(u, u));
   u = (length > 0.0 ? 1.0 / length : 0.0) * u;

@@ -8,7 +8,8 @@
 /// triangle of three consecutive nodes of a polygon that contains no other node of it). Here in the
 /// plane of the mean normal of the hole's old triangles, and the best-shaped ear goes first.
 /// Orientation and containment are the same in every affine image of that plane, so the ring is
-/// projected along the normal onto a coordinate plane; lengths and areas are those of the true plane.
+/// projected along the normal onto a coordinate plane; lengths and areas are those of the true
+/// plane.
 
 #ifndef UNDECIMATE_CORE_EAR_CUTTING_H
 #define UNDECIMATE_CORE_EAR_CUTTING_H
@@ -58,8 +59,8 @@ public:
   /// @param normal of the plane, any length but 0
   EarCutting(const Vector* ring, int size, const Vector& normal);
 
-  /// Whether the first `count` of the triangles (origin, ring[i], ring[i + 1]) all lie upside up, so
-  /// that the plane shows a hole around the origin as it is.
+  /// Whether the first `count` of the triangles (origin, ring[i], ring[i + 1]) all lie upside up,
+  /// so that the plane shows a hole around the origin as it is.
   bool seesFan(int count) const
   {
     for (int i = 0; i < count; ++i)
@@ -127,8 +128,8 @@ private:
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   }
 
-  // Height of the ear over its base, the edge that would be new, in units of the base; negative for a
-  // reflex corner. The larger, the shorter the new edge and the less the angle it cuts off.
+  // Height of the ear over its base, the edge that would be new, in units of the base; negative for
+  // a reflex corner. The larger, the shorter the new edge and the less the angle it cuts off.
   double height(int i) const
   {
     const Point& a = this->points_[this->previous_[i]];
@@ -145,8 +146,8 @@ private:
     this->quality_[i] = height > kFlat && this->isEmpty(i) ? height : kNotAnEar;
   }
 
-  // Whether no other corner lies in the triangle at corner i. If any does a reflex one does; a corner
-  // that was cut lies outside what is left.
+  // Whether no other corner lies in the triangle at corner i. If any does a reflex one does; a
+  // corner that was cut lies outside what is left.
   bool isEmpty(int i) const
   {
     const int previous = this->previous_[i];

@@ -4,10 +4,10 @@
 /// @file fold_rule.h
 /// @brief Which triangles of ring nodes may fill a hole without folding the surface.
 ///
-/// A new triangle may not turn away too far from the old one on the same ring edge, or, if it has no
-/// ring edge, from the mean normal of the hole. Needles may turn less: one that stands across the
-/// surface is a fold, however near it is. And a height field stays one: if all triangles of the input
-/// face the same way along an axis, so do all new ones.
+/// A new triangle may not turn away too far from the old one on the same ring edge, or, if it has
+/// no ring edge, from the mean normal of the hole. Needles may turn less: one that stands across
+/// the surface is a fold, however near it is. And a height field stays one: if all triangles of the
+/// input face the same way along an axis, so do all new ones.
 
 #ifndef UNDECIMATE_CORE_FOLD_RULE_H
 #define UNDECIMATE_CORE_FOLD_RULE_H
@@ -110,7 +110,8 @@ public:
       if (facing[i])
       {
         const double sign = i % 2 == 0 ? 1.0 : -1.0;
-        this->direction_ = { i < 2 ? sign : 0.0, i == 2 || i == 3 ? sign : 0.0, i > 3 ? sign : 0.0 };
+        this->direction_ = { i < 2 ? sign : 0.0, i == 2 || i == 3 ? sign : 0.0,
+          i > 3 ? sign : 0.0 };
         this->known_ = true;
       }
     }

@@ -16,8 +16,8 @@ ExponentialIntervals::ExponentialIntervals(double smallest, double largest, Inde
   , length_(1.0)
   , count_(std::max<Index>(1, count))
 {
-  // D = 0 would divide by zero in both formulas: all values equal need one interval. So do values so
-  // small that they cannot be normalised.
+  // D = 0 would divide by zero in both formulas: all values equal need one interval. So do values
+  // so small that they cannot be normalised.
   if (!std::isfinite(this->scale_) || !(largest > 0.0) || !(this->delta_ > 0.0))
   {
     this->delta_ = 0.0;

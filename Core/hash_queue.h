@@ -60,11 +60,12 @@ private:
   Index count_;
 };
 
-/// A priority queue of nodes that is exact to the width of an interval, with all operations in O(1).
+/// A priority queue of nodes that is exact to the width of an interval, with all operations in
+/// O(1).
 ///
 /// The next node is the first of the lowest non-empty interval; within an interval nodes leave in
-/// the order in which they came, which spreads the removals over the mesh ([K03] 1.2). Doubly linked
-/// lists in flat arrays, and a three-level bit set that finds the lowest non-empty interval.
+/// the order in which they came, which spreads the removals over the mesh ([K03] 1.2). Doubly
+/// linked lists in flat arrays, and a three-level bit set that finds the lowest non-empty interval.
 ///
 /// Memory: 12 bytes a node and 8 bytes an interval.
 class HashQueue
@@ -141,7 +142,8 @@ private:
 /// Number of intervals of IntervalSpacing::Logarithmic.
 constexpr Index kLogarithmicIntervals = 256 << 7;
 
-/// Interval of a value >= 0 with logarithmic spacing; negative values count as 0, NaN as the largest.
+/// Interval of a value >= 0 with logarithmic spacing; negative values count as 0, NaN as the
+/// largest.
 inline Index logarithmicInterval(float value)
 {
   if (value != value)

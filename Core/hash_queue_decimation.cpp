@@ -200,8 +200,7 @@ private:
     costs.assign(this->nodeCount_, -1.0F);
     for (Index node = 0; node < this->nodeCount_; ++node)
     {
-      if ((node & 1023) == 0 &&
-        !this->monitor_.update(kEvaluationShare * node / this->nodeCount_))
+      if ((node & 1023) == 0 && !this->monitor_.update(kEvaluationShare * node / this->nodeCount_))
       {
         return false;
       }
@@ -262,12 +261,14 @@ private:
     }
     if (next[1] != kNone)
     {
-      this->topology_.prefetchRing(next[1], [&](Index ringNode) {
-        this->points_.prefetch(ringNode);
-        this->criterion_.prefetch(ringNode);
-        queue.prefetch(ringNode);
-        __builtin_prefetch(&this->kept_[ringNode]);
-      });
+      this->topology_.prefetchRing(next[1],
+        [&](Index ringNode)
+        {
+          this->points_.prefetch(ringNode);
+          this->criterion_.prefetch(ringNode);
+          queue.prefetch(ringNode);
+          __builtin_prefetch(&this->kept_[ringNode]);
+        });
     }
   }
 
@@ -282,8 +283,7 @@ private:
       unsigned char* cell = this->oldCells_.data() + 3 * i;
       cell[corner] = 0;
       cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
-      cell[previousCorner(corner)] =
-        static_cast<unsigned char>(i + 1 == hole.size ? 1 : i + 2);
+      cell[previousCorner(corner)] = static_cast<unsigned char>(i + 1 == hole.size ? 1 : i + 2);
     }
     for (int i = 0; i < filling.count; ++i)
     {
@@ -306,8 +306,7 @@ private:
     step.oldCells = this->oldCells_.data();
     step.newCells = this->newCells_.data();
     step.sources = this->sources_.data();
-    step.error =
-      this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * cost : cost;
+    step.error = this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * cost : cost;
     builder.append(step);
     this->topology_.replace(hole, filling);
     this->criterion_.removed(hole, filling);
@@ -376,7 +375,8 @@ Outcome checkArrays(const HashQueueDecimationOptions& options)
 
 Outcome checkOptions(const HashQueueDecimationOptions& options)
 {
-  const auto invalid = [](const char* name, double value, const char* range) -> Outcome {
+  const auto invalid = [](const char* name, double value, const char* range) -> Outcome
+  {
     return { Status::InvalidArgument,
       std::string(name) + " is " + std::to_string(value) + "; it must be " + range + "." };
   };
@@ -423,8 +423,8 @@ Outcome checkMesh(const TriangleMeshView& mesh)
     {
       return { Status::InvalidArgument,
         "Triangle " + std::to_string(i / 3) + " refers to node " +
-          std::to_string(mesh.triangles[i]) + ", but there are " +
-          std::to_string(mesh.nodeCount) + " nodes." };
+          std::to_string(mesh.triangles[i]) + ", but there are " + std::to_string(mesh.nodeCount) +
+          " nodes." };
     }
   }
   return {};
@@ -483,8 +483,7 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
   Status status = Status::Ok;
   if (options.criterion == Criterion::Deviation)
   {
-    DeviationCriterion criterion(
-      topology, points, options.arrays, options.scalarWeight, kept);
+    DeviationCriterion criterion(topology, points, options.arrays, options.scalarWeight, kept);
     status =
       Decimation<DeviationCriterion>(topology, points, criterion, kept, options, goal, monitor)
         .run(result);

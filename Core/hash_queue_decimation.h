@@ -41,11 +41,11 @@ struct HashQueueDecimationOptions
   Criterion criterion = Criterion::Deviation;
 
   /// Stops; the first one that is reached counts.
-  double targetReduction = 0.9; ///< fraction of the triangles to remove, in [0, 1]
-  std::int64_t targetNodes = 0; ///< stop at this many nodes; 0 = off
+  double targetReduction = 0.9;     ///< fraction of the triangles to remove, in [0, 1]
+  std::int64_t targetNodes = 0;     ///< stop at this many nodes; 0 = off
   std::int64_t targetTriangles = 0; ///< stop at this many triangles; 0 = off
-  /// Largest error: no step with a larger one is made. In the unit of the criterion (fraction of the
-  /// diagonal or of the range, or degrees); 0 or more, infinite = no limit.
+  /// Largest error: no step with a larger one is made. In the unit of the criterion (fraction of
+  /// the diagonal or of the range, or degrees); 0 or more, infinite = no limit.
   double maximumError = std::numeric_limits<double>::infinity();
 
   IntervalSpacing intervalSpacing = IntervalSpacing::Logarithmic;
@@ -56,7 +56,8 @@ struct HashQueueDecimationOptions
   bool preserveBoundary = false;
 
   /// Nodal arrays that steer. ScalarDifference needs one and uses the first; Deviation takes any
-  /// number: an error of the fraction f of an array's range counts as the deviation scalarWeight * f.
+  /// number: an error of the fraction f of an array's range counts as the deviation scalarWeight *
+  /// f.
   std::vector<NodalArrayView> arrays;
   double scalarWeight = 0.1; ///< >= 0; 0 = geometry only. Deviation only.
 
@@ -97,9 +98,10 @@ struct HashQueueDecimationResult
 /// Decimate a triangle mesh.
 ///
 /// Any triangles are accepted: degenerate or repeated ones, non-manifold edges and bow ties stay as
-/// they are at every level, with their nodes. A removal is refused (the node is tried again when its
-/// surroundings change) when every triangulation of the hole flips a triangle or makes an edge or a
-/// triangle that exists. So each edge has at most two triangles at every level if it had before.
+/// they are at every level, with their nodes. A removal is refused (the node is tried again when
+/// its surroundings change) when every triangulation of the hole flips a triangle or makes an edge
+/// or a triangle that exists. So each edge has at most two triangles at every level if it had
+/// before.
 ///
 /// @param mesh the input; not changed
 /// @param options see there

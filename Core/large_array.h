@@ -4,13 +4,13 @@
 /// @file large_array.h
 /// @brief Arrays that are read here and there: in huge pages where the system has them.
 ///
-/// The nodes of a mesh are visited in an order that memory does not know. With pages of 4 KiB nearly
-/// every visit then waits for the address translation as well. Linux gives pages of 2 MiB to those
-/// who ask (madvise); other systems, and arrays that are not large, get ordinary memory.
+/// The nodes of a mesh are visited in an order that memory does not know. With pages of 4 KiB
+/// nearly every visit then waits for the address translation as well. Linux gives pages of 2 MiB to
+/// those who ask (madvise); other systems, and arrays that are not large, get ordinary memory.
 ///
-/// Large blocks of memory all begin at the same place in a page. A processor that compares only this
-/// place lets a read of an array wait for a write to the same index of another one. So arrays that are
-/// used together get different shifts.
+/// Large blocks of memory all begin at the same place in a page. A processor that compares only
+/// this place lets a read of an array wait for a write to the same index of another one. So arrays
+/// that are used together get different shifts.
 
 #ifndef UNDECIMATE_CORE_LARGE_ARRAY_H
 #define UNDECIMATE_CORE_LARGE_ARRAY_H
@@ -75,11 +75,17 @@ public:
     }
 #endif
     static_cast<void>(count);
-    ::operator delete(memory, std::align_val_t{ kCacheLine });
+    ::operator delete (memory, std::align_val_t{ kCacheLine });
   }
 
-  friend bool operator==(const LargeArrayAllocator&, const LargeArrayAllocator&) { return true; }
-  friend bool operator!=(const LargeArrayAllocator&, const LargeArrayAllocator&) { return false; }
+  friend bool operator==(const LargeArrayAllocator&, const LargeArrayAllocator&)
+  {
+    return true;
+  }
+  friend bool operator!=(const LargeArrayAllocator&, const LargeArrayAllocator&)
+  {
+    return false;
+  }
 
 private:
   static constexpr std::size_t kCacheLine = 64;
@@ -87,8 +93,14 @@ private:
   static constexpr std::size_t kOffset = Shift * 16 * kCacheLine; // quarters of the smallest page
   static_assert(alignof(T) <= kCacheLine && Shift >= 0 && Shift < 4, "");
 
-  static std::size_t byteSize(std::size_t count) { return count * sizeof(T) + kOffset; }
-  static bool isLarge(std::size_t bytes) { return bytes >= 2 * kHugePage; }
+  static std::size_t byteSize(std::size_t count)
+  {
+    return count * sizeof(T) + kOffset;
+  }
+  static bool isLarge(std::size_t bytes)
+  {
+    return bytes >= 2 * kHugePage;
+  }
 
   static char* allocateBytes(std::size_t bytes)
   {
@@ -107,7 +119,7 @@ private:
       return static_cast<char*>(memory);
     }
 #endif
-    return static_cast<char*>(::operator new(bytes, std::align_val_t{ kCacheLine }));
+    return static_cast<char*>(::operator new (bytes, std::align_val_t{ kCacheLine }));
   }
 };
 

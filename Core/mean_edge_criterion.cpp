@@ -161,7 +161,8 @@ bool MeanEdgeCriterion::retriangulate(
   }
   const int last = hole.size - 1;
   const bool cut = ears.cut(
-    [&](int i, int j) {
+    [&](int i, int j)
+    {
       const bool closing = hole.boundary && (i + j == last && (i == 0 || j == 0));
       return closing || !this->topology_.mayHaveEdge(hole.ring[i], hole.ring[j]);
     },
@@ -169,8 +170,7 @@ bool MeanEdgeCriterion::retriangulate(
   return cut && isUnfolded(hole, ring.data(), normal, filling, this->heightField_);
 }
 
-void MeanEdgeCriterion::removed(
-  const Hole& hole, const HoleTriangulation& filling)
+void MeanEdgeCriterion::removed(const Hole& hole, const HoleTriangulation& filling)
 {
   for (int i = 0; i < hole.size; ++i)
   {

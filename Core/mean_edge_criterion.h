@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file mean_edge_criterion.h
-/// @brief The two criteria of [K03] 1.1: means, over the edges at a node, of a quantity of the edge.
+/// @brief The two criteria of [K03] 1.1: means, over the edges at a node, of a quantity of the
+/// edge.
 ///
 /// *Scalar Difference*: |f_i - f_j| as a fraction of the range of f (vectors: the norm of the
 /// difference). *Angle to XY Plane*: the angle between the edge and the plane z = 0, as a fraction
@@ -13,8 +14,8 @@
 #ifndef UNDECIMATE_CORE_MEAN_EDGE_CRITERION_H
 #define UNDECIMATE_CORE_MEAN_EDGE_CRITERION_H
 
-#include "large_array.h"
 #include "fold_rule.h"
+#include "large_array.h"
 #include "mesh_points.h"
 #include "triangle_topology.h"
 

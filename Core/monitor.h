@@ -18,9 +18,9 @@ namespace undecimate
 /// The one object through which the core reports progress and hears cancel.
 ///
 /// The core calls update() with a fraction that never decreases and ends at 1. The host's callback
-/// runs in the thread of the core call, at each half per cent and otherwise twenty times a second, and
-/// returns false to cancel. cancel() may be called from any thread. A monitor may be used for one call
-/// after the other; reset() forgets an earlier cancellation.
+/// runs in the thread of the core call, at each half per cent and otherwise twenty times a second,
+/// and returns false to cancel. cancel() may be called from any thread. A monitor may be used for
+/// one call after the other; reset() forgets an earlier cancellation.
 class Monitor
 {
 public:

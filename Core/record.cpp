@@ -24,8 +24,8 @@ constexpr int kMaximumLocals = 256;
 Outcome damaged(const char* array, std::int64_t entry, const char* why)
 {
   return { Status::InvalidRecord,
-    std::string("Record array '") + array + "' is damaged at entry " + std::to_string(entry) + ": " +
-      why + "." };
+    std::string("Record array '") + array + "' is damaged at entry " + std::to_string(entry) +
+      ": " + why + "." };
 }
 
 Outcome checkPresence(const RecordView& record, const Index* baseCells)
@@ -40,8 +40,8 @@ Outcome checkPresence(const RecordView& record, const Index* baseCells)
     { record.cellOrder, record.cellCount, "CellOrder" },
     { record.stepShapes, record.stepCount, "StepShapes" },
     { record.stepErrors, record.stepCount, "StepErrors" },
-    { record.patches, record.patchSize, "Patches" },
-    { record.shapeOffsets, 1, "ShapeOffsets" }, { record.shapes, record.shapeCount, "Shapes" },
+    { record.patches, record.patchSize, "Patches" }, { record.shapeOffsets, 1, "ShapeOffsets" },
+    { record.shapes, record.shapeCount, "Shapes" },
     { record.baseSources, record.hasSources ? record.baseCellCount : 0, "BaseSources" },
     { record.lostSources, record.hasSources ? record.lostSourceSize : 0, "LostSources" },
     { baseCells, record.baseCellCount, "cells of the coarse mesh" } };
@@ -85,8 +85,7 @@ Outcome checkShape(const RecordView& record, Index shape)
   const int newCount = bytes[1];
   const int extra = bytes[2];
   const int corners = record.cornersPerCell;
-  const Index size =
-    3 + corners * (oldCount + newCount) + (record.hasSources ? newCount : 0);
+  const Index size = 3 + corners * (oldCount + newCount) + (record.hasSources ? newCount : 0);
   if (end - begin != size || oldCount < 1 || oldCount > kMaximumPatchCells || newCount >= oldCount)
   {
     return damaged("Shapes", begin, "wrong counts");
@@ -234,7 +233,7 @@ Outcome checkSources(const Index* sources, std::int64_t count, Index cellCount, 
 /// order in which they come back.
 struct RecordOrder
 {
-  std::vector<Index> order;    // original number at each position
+  std::vector<Index> order;   // original number at each position
   LargeArray<Index> position; // and the other way round
 
   RecordOrder(Index count, const std::vector<Index>& comingBack)
@@ -381,7 +380,8 @@ public:
     {
       const Entry& entry = this->entries_[i];
       // Equal counts are equal lengths, and the first bytes are the counts.
-      if (entry.hash == hash && record.shapes.size() - entry.begin >= static_cast<std::size_t>(size) &&
+      if (entry.hash == hash &&
+        record.shapes.size() - entry.begin >= static_cast<std::size_t>(size) &&
         std::memcmp(record.shapes.data() + entry.begin, shape.data(), size) == 0)
       {
         return entry.number;
@@ -495,7 +495,8 @@ void RecordBuilder::append(const Step& step)
 
   // Numbering by first appearance in the new cells makes equal patches equal shapes, and leaves the
   // nodes that no new cell has with the last numbers.
-  std::array<unsigned char, kMaximumPatchCells + 2> local; // of a position in the ring; 0 = none yet
+  std::array<unsigned char, kMaximumPatchCells + 2>
+    local; // of a position in the ring; 0 = none yet
   std::array<Index, kMaximumPatchCells + 2> extraNodes;
   std::fill_n(local.begin(), step.ringSize + 1, static_cast<unsigned char>(0));
   unsigned char locals = 0;
@@ -552,7 +553,8 @@ void RecordBuilder::append(const Step& step)
   record.stepShapes.push_back(in.shapeTable.number(shape, size, record));
   in.largestError = std::max(in.largestError, static_cast<float>(step.error));
   record.stepErrors.push_back(in.largestError);
-  const auto add = [](std::vector<Index>& to, const Index* values, int count) {
+  const auto add = [](std::vector<Index>& to, const Index* values, int count)
+  {
     for (int i = 0; i < count; ++i)
     {
       to.push_back(values[i]);
@@ -578,13 +580,13 @@ Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
   std::reverse(record.patches.begin(), record.patches.end());
   std::reverse(in.freedSlots.begin(), in.freedSlots.end());
   std::reverse(record.lostSources.begin(), record.lostSources.end());
-  const auto reverseChunk = [](Index* begin, int size) {
+  const auto reverseChunk = [](Index* begin, int size)
+  {
     std::reverse(begin, begin + size);
     return begin + size;
   };
-  const auto shapeOf = [&record](Index step) {
-    return record.shapes.data() + record.shapeOffsets[record.stepShapes[step]];
-  };
+  const auto shapeOf = [&record](Index step)
+  { return record.shapes.data() + record.shapeOffsets[record.stepShapes[step]]; };
   Index* freed = in.freedSlots.data();
   Index* lost = record.lostSources.data();
   for (Index step = 0; step < steps; ++step)

@@ -65,15 +65,15 @@ struct RecordView
   int cornersPerCell = 3;
   bool hasSources = false; ///< the source of each cell's values is recorded
 
-  const Index* nodeOrder = nullptr;     ///< nodeCount: original number of a node
-  const Index* cellOrder = nullptr;     ///< cellCount: original number of a slot's cell
-  const Index* stepShapes = nullptr;    ///< stepCount
-  const float* stepErrors = nullptr;    ///< stepCount, never increasing: error before step j is undone
-  const Index* patches = nullptr;       ///< patchSize: slots and extra nodes, step after step
-  const Index* shapeOffsets = nullptr;  ///< shapeCount + 1
+  const Index* nodeOrder = nullptr;  ///< nodeCount: original number of a node
+  const Index* cellOrder = nullptr;  ///< cellCount: original number of a slot's cell
+  const Index* stepShapes = nullptr; ///< stepCount
+  const float* stepErrors = nullptr; ///< stepCount, never increasing: error before step j is undone
+  const Index* patches = nullptr;    ///< patchSize: slots and extra nodes, step after step
+  const Index* shapeOffsets = nullptr;   ///< shapeCount + 1
   const unsigned char* shapes = nullptr; ///< shapeOffsets[shapeCount] bytes
-  const Index* baseSources = nullptr;   ///< baseCellCount if hasSources: original cell number
-  const Index* lostSources = nullptr;   ///< lostSourceSize if hasSources: of old cells without heir
+  const Index* baseSources = nullptr;    ///< baseCellCount if hasSources: original cell number
+  const Index* lostSources = nullptr; ///< lostSourceSize if hasSources: of old cells without heir
   std::int64_t patchSize = 0;
   std::int64_t lostSourceSize = 0;
 };
@@ -131,8 +131,9 @@ public:
     const Index* slots = nullptr;            ///< oldCount; the new cells take the first newCount
     const unsigned char* oldCells = nullptr; ///< 3 * oldCount, as the corners stand in the slots
     const unsigned char* newCells = nullptr; ///< 3 * newCount
-    const unsigned char* sources = nullptr;  ///< newCount, if tracked: old cell whose values it takes
-    double error = 0.0;                      ///< of this step; the record keeps the largest so far
+    const unsigned char* sources =
+      nullptr;          ///< newCount, if tracked: old cell whose values it takes
+    double error = 0.0; ///< of this step; the record keeps the largest so far
   };
   void append(const Step& step);
 

@@ -66,8 +66,7 @@ inline float inProduct(const float* v, float x, float y, float z)
 }
 
 // Squared distance within the plane to an edge, and the side of it.
-inline float edgeSquare(
-  const DistanceTriangle::Edge& edge, float x, float y, float z, float& side)
+inline float edgeSquare(const DistanceTriangle::Edge& edge, float x, float y, float z, float& side)
 {
   side = inProduct(edge.inwards, x, y, z) - edge.side;
   const float along = inProduct(edge.along, x, y, z) - edge.start;

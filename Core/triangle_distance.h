@@ -4,9 +4,9 @@
 /// @file triangle_distance.h
 /// @brief Squared distances of many points to one triangle, without branches.
 ///
-/// In the frame of each edge (along it, and inwards in the triangle's plane) the distance to the edge
-/// is the inward offset and the excess beyond its ends; inside all three edges only the height over
-/// the plane is left. Written so that compilers turn the loops into vector instructions.
+/// In the frame of each edge (along it, and inwards in the triangle's plane) the distance to the
+/// edge is the inward offset and the excess beyond its ends; inside all three edges only the height
+/// over the plane is left. Written so that compilers turn the loops into vector instructions.
 
 #ifndef UNDECIMATE_CORE_TRIANGLE_DISTANCE_H
 #define UNDECIMATE_CORE_TRIANGLE_DISTANCE_H
@@ -52,10 +52,10 @@ public:
 
   struct Edge
   {
-    float along[3];  // unit vector
-    float start;     // of the edge's first corner, along the edge
+    float along[3];   // unit vector
+    float start;      // of the edge's first corner, along the edge
     float inwards[3]; // unit vector in the plane
-    float side;      // of the edge, inwards
+    float side;       // of the edge, inwards
     float length;
     float inverseHeight; // of the opposite corner over the edge
   };
@@ -68,8 +68,8 @@ public:
 void project(const PointRows& points, const Vector& axisX, const Vector& axisY, float* x, float* y);
 
 /// sides[i] = dx y[i] - dy x[i] - offset: positive on the left of a line along (dx, dy).
-void sidesOfLine(const float* x, const float* y, int size, float dx, float dy, float offset,
-  float* sides);
+void sidesOfLine(
+  const float* x, const float* y, int size, float dx, float dy, float offset, float* sides);
 
 /// Sides of points against the three edges of a triangle a, b, c: on the left of a-b and of b-c, on
 /// the right of a-c.
@@ -80,8 +80,8 @@ struct SideRows
   const float* ac;
 };
 
-/// The largest of (normal . point - offset)^2, and of extra[i] (may be null), over the points inside;
-/// 0 if there are none. Points on an edge are inside.
+/// The largest of (normal . point - offset)^2, and of extra[i] (may be null), over the points
+/// inside; 0 if there are none. Points on an edge are inside.
 float largestSquaredHeight(const PointRows& points, const Vector& normal, double offset,
   const SideRows& sides, const float* extra);
 

@@ -15,8 +15,8 @@ TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, 
   for (Index t = 0; t < triangleCount; ++t)
   {
     const Index* nodes = triangles + std::size_t{ 3 } * t;
-    this->triangles_[t] = { { nodes[0], nodes[1], nodes[2] },
-      { kNoCorner, kNoCorner, kNoCorner }, kNone, 0 };
+    this->triangles_[t] = { { nodes[0], nodes[1], nodes[2] }, { kNoCorner, kNoCorner, kNoCorner },
+      kNone, 0 };
   }
   this->connect();
   this->markDegenerate();
@@ -30,9 +30,8 @@ void TriangleTopology::connect()
   const Index triangleCount = static_cast<Index>(this->triangles_.size());
   const std::size_t nodeCount = this->nodes_.size();
   LargeArray<Index> begin(nodeCount + 1, 0);
-  const auto smaller = [](const Triangle& t, int c) {
-    return std::min(t.nodes[nextCorner(c)], t.nodes[previousCorner(c)]);
-  };
+  const auto smaller = [](const Triangle& t, int c)
+  { return std::min(t.nodes[nextCorner(c)], t.nodes[previousCorner(c)]); };
   for (const Triangle& t : this->triangles_)
   {
     for (int c = 0; c < 3; ++c)
@@ -68,9 +67,9 @@ void TriangleTopology::connect()
     const auto first = edges.begin() + begin[node];
     const auto last = edges.begin() + begin[node + 1];
     // A stable order keeps the result independent of the standard library.
-    std::sort(first, last, [](const Edge& a, const Edge& b) {
-      return a.larger != b.larger ? a.larger < b.larger : a.corner < b.corner;
-    });
+    std::sort(first, last,
+      [](const Edge& a, const Edge& b)
+      { return a.larger != b.larger ? a.larger < b.larger : a.corner < b.corner; });
     for (auto edge = first; edge != last;)
     {
       auto end = edge + 1;
@@ -80,7 +79,8 @@ void TriangleTopology::connect()
       }
       const auto count = end - edge;
       this->meet(static_cast<Index>(node), edge->larger);
-      const auto startOf = [this](Corner corner) {
+      const auto startOf = [this](Corner corner)
+      {
         const Triangle& t = this->triangles_[triangleOf(corner)];
         return t.nodes[nextCorner(cornerOf(corner))];
       };
@@ -104,7 +104,8 @@ void TriangleTopology::connect()
 // Triangles with a node twice, and triangles that exist twice (in either orientation).
 void TriangleTopology::markDegenerate()
 {
-  const auto mark = [this](const Triangle& t) {
+  const auto mark = [this](const Triangle& t)
+  {
     for (const Index node : t.nodes)
     {
       this->nodes_[node].kind = NodeKind::Degenerate;
@@ -175,8 +176,8 @@ void TriangleTopology::markNodes()
         : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
     } while (corner != kNoCorner && corner != start && count <= uses[node]);
     this->nodes_[node].kind = count != uses[node] ? NodeKind::NonManifold
-      : open[node] == 0                      ? NodeKind::Interior
-                                             : NodeKind::Boundary;
+      : open[node] == 0                           ? NodeKind::Interior
+                                                  : NodeKind::Boundary;
   }
 }
 
@@ -302,7 +303,8 @@ bool TriangleTopology::fillsExistingTriangle(const Hole& hole) const
   {
     if (hole.outer[i] == kNoCorner)
     {
-      // Nothing is there, or triangles that are not connected across this edge: then do not risk it.
+      // Nothing is there, or triangles that are not connected across this edge: then do not risk
+      // it.
       if (!this->isManifold(hole.ring[i]) && !this->isManifold(hole.ring[(i + 1) % hole.size]))
       {
         return true;
@@ -319,11 +321,11 @@ bool TriangleTopology::fillsExistingTriangle(const Hole& hole) const
   return false;
 }
 
-void TriangleTopology::replace(
-  const Hole& hole, const HoleTriangulation& filling)
+void TriangleTopology::replace(const Hole& hole, const HoleTriangulation& filling)
 {
   const auto slot = [&](int i) { return triangleOf(hole.corners[i]); };
-  const auto link = [this](Corner a, Corner b) {
+  const auto link = [this](Corner a, Corner b)
+  {
     this->triangles_[triangleOf(a)].across[cornerOf(a)] = b;
     if (b != kNoCorner)
     {
@@ -339,8 +341,9 @@ void TriangleTopology::replace(
       makeCorner(triangleOf(outer), previousCorner(cornerOf(outer)));
     this->nodes_[hole.ring[1]].corner = makeCorner(triangleOf(outer), nextCorner(cornerOf(outer)));
   }
-  // Diagonals waiting for their other side: at most size - 3. Two arrays, not one of structures: the
-  // last one is moved soon after it was written, and a copy of it in one piece would have to wait.
+  // Diagonals waiting for their other side: at most size - 3. Two arrays, not one of structures:
+  // the last one is moved soon after it was written, and a copy of it in one piece would have to
+  // wait.
   std::array<int, kMaximumPatchCells> waitingEdges;
   std::array<Corner, kMaximumPatchCells> waitingCorners;
   int waiting = 0;

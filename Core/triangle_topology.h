@@ -54,8 +54,9 @@ struct Hole
   std::array<Index, kMaximumPatchCells + 1> ring;
   std::array<Corner, kMaximumPatchCells> corners; ///< of the node: triangle i is (node, ring[i],
                                                   ///< ring[i + 1])
-  std::array<Corner, kMaximumPatchCells> outer; ///< behind ring edge i: corner of the triangle there
-                                                ///< that is opposite to the edge, or kNoCorner
+  std::array<Corner, kMaximumPatchCells>
+    outer; ///< behind ring edge i: corner of the triangle there
+           ///< that is opposite to the edge, or kNoCorner
 };
 
 /// A triangulation of a hole: corners are positions in Hole::ring.
@@ -103,9 +104,9 @@ public:
   /// One fan, closed or open: only such nodes can be removed.
   bool isManifold(Index node) const { return this->nodes_[node].kind <= NodeKind::Boundary; }
 
-  /// Bring the data around a node that will be gathered soon into the cache, in four stages that each
-  /// use what the ones before have brought: the node, its triangle, the triangles beside that, and the
-  /// nodes around it with the triangles behind them.
+  /// Bring the data around a node that will be gathered soon into the cache, in four stages that
+  /// each use what the ones before have brought: the node, its triangle, the triangles beside that,
+  /// and the nodes around it with the triangles behind them.
   void prefetchNode(Index node) const { __builtin_prefetch(&this->nodes_[node]); }
   void prefetchTriangle(Index node) const { this->prefetchTriangleOf(this->nodes_[node].corner); }
   void prefetchNeighbours(Index node) const

@@ -17,16 +17,16 @@
 namespace undecimate
 {
 
-/// A cursor on a record. Step count k in [0, stepCount]: 0 is the coarsest level (level 0), stepCount
-/// the original mesh (level 1). All numbers that it hands out are in record order.
+/// A cursor on a record. Step count k in [0, stepCount]: 0 is the coarsest level (level 0),
+/// stepCount the original mesh (level 1). All numbers that it hands out are in record order.
 ///
 /// Memory: 12 bytes a triangle of the original mesh, 4 more if sources are recorded.
 class Undecimation
 {
 public:
   /// Check the record and stand at level 0. The record's arrays must outlive the cursor's use. What
-  /// passes can be walked to any level and back, and no level refers to nodes that it does not have.
-  /// Complexity: O(record); walks it once.
+  /// passes can be walked to any level and back, and no level refers to nodes that it does not
+  /// have. Complexity: O(record); walks it once.
   /// @param record the record
   /// @param baseCells the cells of the coarsest level, in record order; copied
   /// @return InvalidRecord, OutOfMemory or Ok; unless Ok the cursor is closed
