@@ -342,6 +342,9 @@ void describe(vtkAbstractArray* array, vtkAbstractArray* like)
   array->SetName(like->GetName());
   array->SetNumberOfComponents(like->GetNumberOfComponents());
   array->CopyComponentNames(like);
+  // Made now, for an array that gets its information later (at the first GetRange()) counts as
+  // modified, and everything downstream would run again.
+  array->GetInformation();
   if (like->HasInformation())
   {
     array->CopyInformation(like->GetInformation(), /*deep=*/1);

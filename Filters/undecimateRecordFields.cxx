@@ -84,6 +84,7 @@ void write(vtkFieldData* fields, const char* name, std::vector<Value>& values)
   }
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   std::vector<Value>().swap(values);
+  array->GetInformation(); // see describe() in undecimateArrays.cxx
   fields->AddArray(array);
 }
 

@@ -305,6 +305,37 @@ TEST(Undecimation, ALevelChangeRunsNothingUpstream)
   EXPECT_EQ(runs, 1);
 }
 
+// What ParaView does with all arrays of what it shows must not make the record be decoded again.
+TEST(Undecimation, AskingForRangesDoesNotModifyTheMeshes)
+{
+  Watched<vtkHashQueueDecimation> decimation;
+  decimation->SetInputData(makeGrid());
+  Undecimation filter;
+  filter->SetInputConnection(decimation->GetOutputPort());
+  filter->SetLevel(0.5);
+  filter.output();
+  for (vtkPolyData* mesh : { decimation->GetOutput(), filter->GetOutput() })
+  {
+    const vtkMTimeType time = mesh->GetMTime();
+    for (vtkFieldData* data : { static_cast<vtkFieldData*>(mesh->GetPointData()),
+           static_cast<vtkFieldData*>(mesh->GetCellData()), mesh->GetFieldData() })
+    {
+      for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+      {
+        if (vtkDataArray* array = data->GetArray(i))
+        {
+          array->GetRange();
+          array->GetRange(-1);
+          array->GetFiniteRange();
+        }
+      }
+    }
+    mesh->GetBounds();
+    mesh->GetPoints()->GetData()->GetRange();
+    EXPECT_EQ(mesh->GetMTime(), time);
+  }
+}
+
 TEST(Undecimation, SharesTheArraysOfAnUnchangedLevel)
 {
   Undecimation filter;
