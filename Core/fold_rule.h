@@ -35,43 +35,49 @@ public:
   /// Below this shape a triangle counts as degenerate.
   static constexpr double kMinimumShape = 1e-4;
 
+  // Roots are taken only where they are needed: this runs for every triangle that is considered.
   FilledTriangle(const Vector& a, const Vector& b, const Vector& c)
+    : cross_(cross(b - a, c - a))
+    , square_(dot(this->cross_, this->cross_))
+    , edges_(dot(b - a, b - a) + dot(c - a, c - a) + dot(c - b, c - b))
   {
-    const Vector ab = b - a;
-    const Vector ac = c - a;
-    const Vector bc = c - b;
-    const Vector n = cross(ab, ac);
-    const double area = std::sqrt(dot(n, n));
-    const double edges = dot(ab, ab) + dot(bc, bc) + dot(ac, ac);
-    this->shape_ = area > 0.0 ? 2.0 * std::sqrt(3.0) * area / edges : 0.0;
-    if (this->shape_ > kMinimumShape)
+    if (this->shapeBelow(kNeedleShape) && !this->degenerate())
     {
-      this->normal_ = (1.0 / area) * n;
-      this->minimumCosine_ = kMinimumCosine +
-        (kNeedleCosine - kMinimumCosine) * std::max(0.0, 1.0 - this->shape_ / kNeedleShape);
+      this->minimumCosine_ =
+        kMinimumCosine + (kNeedleCosine - kMinimumCosine) * (1.0 - this->shape() / kNeedleShape);
     }
   }
 
-  bool degenerate() const { return !(this->shape_ > kMinimumShape); }
+  bool degenerate() const { return !(this->square_ > 0.0) || this->shapeBelow(kMinimumShape); }
 
   /// 4 sqrt(3) area / sum of squared edges: 1 for an equilateral triangle.
-  double shape() const { return this->shape_; }
+  double shape() const { return 2.0 * std::sqrt(3.0 * this->square_) / this->edges_; }
 
   /// Unit normal, unless degenerate.
-  const Vector& normal() const { return this->normal_; }
+  Vector normal() const { return (1.0 / std::sqrt(this->square_)) * this->cross_; }
 
-  /// Whether the triangle, not degenerate, may be beside one with such a normal (of any length).
-  bool follows(const Vector& oldNormal) const
+  /// Whether the normal's cosine with a direction of any length is larger than a number >= 0.
+  bool faces(const Vector& direction, double cosine) const
   {
-    const double cosine = dot(this->normal_, oldNormal);
-    return cosine > 0.0 &&
-      cosine * cosine > this->minimumCosine_ * this->minimumCosine_ * dot(oldNormal, oldNormal);
+    const double product = dot(this->cross_, direction);
+    return product > 0.0 &&
+      product * product > cosine * cosine * this->square_ * dot(direction, direction);
   }
 
+  /// Whether the triangle, not degenerate, may be beside one with such a normal (of any length).
+  bool follows(const Vector& oldNormal) const { return this->faces(oldNormal, this->minimumCosine_); }
+
 private:
-  double shape_;
-  double minimumCosine_ = 1.0;
-  Vector normal_;
+  // shape() < limit
+  bool shapeBelow(double limit) const
+  {
+    return 12.0 * this->square_ < limit * limit * this->edges_ * this->edges_;
+  }
+
+  Vector cross_;
+  double square_; // of cross_
+  double edges_;  // sum of the squared edges
+  double minimumCosine_ = kMinimumCosine;
 };
 
 /// The direction along an axis that all triangles of a height field face.
@@ -119,7 +125,7 @@ public:
 
   bool allows(const FilledTriangle& triangle) const
   {
-    return !this->known_ || dot(triangle.normal(), this->direction_) > kSmallest;
+    return !this->known_ || triangle.faces(this->direction_, kSmallest);
   }
 
 private:
