@@ -115,9 +115,13 @@ TEST_F(FiveNodes, AngleToXYPlaneByHand)
 }
 
 // The first node that goes is the one with the smallest mean difference: node 0, drawn above. Its
-// two triangles become one, and the value of the removal is its error.
+// two triangles become one, and the value of the removal is its error. (Node 4 has to lie beyond
+// the line from 1 to 3, else the new triangle would be folded.)
 TEST_F(FiveNodes, DecimationRemovesTheCheapestNodeFirst)
 {
+  mesh.points[12] = 1.3;
+  mesh.points[13] = 1.3;
+  mesh.points[14] = 0.1;
   const std::vector<float> values{ 0.0F, 2.0F, 10.0F, 0.0F, 4.0F };
   HashQueueDecimationOptions options;
   options.criterion = Criterion::ScalarDifference;

@@ -101,7 +101,7 @@ protected:
 
 TEST_P(UndecimationTest, LevelZeroIsTheCoarsestAndLevelOneTheOriginal)
 {
-  ASSERT_GT(cursor.stepCount(), 50);
+  ASSERT_GT(cursor.stepCount(), 30);
   EXPECT_EQ(cursor.steps(), 0);
   EXPECT_EQ(cursor.nodeCount(), decimated.result.record.baseNodeCount);
   EXPECT_EQ(Level(cursor).cells, decimated.result.baseTriangles);
