@@ -10,9 +10,11 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 if (UNDECIMATE_SANITIZE)
-  # For all targets: every library of a process has to agree.
+  # For all targets: every library of a process has to agree. Little optimisation, since it costs
+  # more time to compile than it saves, and assertions are on.
+  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all
-    -fno-omit-frame-pointer -g)
+    -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 endif ()
 
