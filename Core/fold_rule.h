@@ -65,7 +65,10 @@ public:
   }
 
   /// Whether the triangle, not degenerate, may be beside one with such a normal (of any length).
-  bool follows(const Vector& oldNormal) const { return this->faces(oldNormal, this->minimumCosine_); }
+  bool follows(const Vector& oldNormal) const
+  {
+    return this->faces(oldNormal, this->minimumCosine_);
+  }
 
 private:
   // shape() < limit

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// clang-format off: the table
+// clang-format off
 /// @file undecimateRecordFields.h
 /// @brief How a record travels: as field data arrays of the coarse mesh.
 ///
@@ -12,12 +12,13 @@
 /// | ------------------ | --------------- | ------ |
 /// | .Header            | int64           | see HeaderField |
 /// | .NodeOrder         | int32           | a node: its original number |
-/// | .CellOrder         | int32           | a triangle slot: its original number among the
-/// triangles | | .StepShapes        | int32           | a step: its shape | | .StepErrors        |
-/// float           | a step: error before it is undone | | .Patches           | int32           |
-/// slots and extra nodes, step after step | | .ShapeOffsets      | int32           | where each
-/// shape starts in .Shapes, and the end | | .Shapes            | unsigned char   | the shapes | |
-/// .BaseSources       | int32           | a triangle of the coarse mesh: original triangle shown |
+/// | .CellOrder         | int32           | a triangle slot: its original number among the triangles |
+/// | .StepShapes        | int32           | a step: its shape |
+/// | .StepErrors        | float           | a step: error before it is undone |
+/// | .Patches           | int32           | slots and extra nodes, step after step |
+/// | .ShapeOffsets      | int32           | where each shape starts in .Shapes, and the end |
+/// | .Shapes            | unsigned char   | the shapes |
+/// | .BaseSources       | int32           | a triangle of the coarse mesh: original triangle shown |
 /// | .LostSources       | int32           | original triangles of old cells without heir |
 /// | .Points            | as the points   | x, y, z of a removed node |
 /// | .PointData.i       | as the array    | values of point array i at a removed node |
