@@ -21,6 +21,7 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Polygon_mesh_processing/distance.h>
+#include <CGAL/Random.h>
 #include <CGAL/Surface_mesh.h>
 
 #include <gtest/gtest.h>
@@ -44,10 +45,8 @@ namespace PMP = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// The claim may be this much too small (a part of what is measured) ...
-constexpr double kClaimTooSmall = 1.1;
-/// ... or too large.
-constexpr double kClaimTooLarge = 2.0;
+/// What the record claims may be larger than what is measured by this factor (measured: 1.06).
+constexpr double kClaimTooLarge = 1.2;
 /// Distances below this fraction of the diagonal are rounding.
 constexpr double kRounding = 1e-6;
 
@@ -55,25 +54,29 @@ constexpr int kSamples = 100000;
 
 constexpr std::array<int, 4> kPercent = { 50, 25, 10, 5 };
 
-/// A mesh; the smallest error bound that CGAL is asked for; and the largest two-sided Hausdorff
-/// distance at 50, 25, 10 and 5 % of the triangles: what was measured when the bound was set, and a
-/// tenth more. All as fractions of the diagonal.
+/// A mesh and its bounds: what was measured when they were set, and a tenth more. Distances are
+/// two-sided Hausdorff distances as fractions of the diagonal.
 struct Case
 {
   const char* name;
-  bool isDevelopmentData; ///< absent from a copy of the repository alone
-  double errorBound;
-  std::array<double, 4> bounds;
+  bool isDevelopmentData;          ///< absent from a copy of the repository alone
+  double errorBound;               ///< smallest one that CGAL is asked for
+  double claimTooSmall;            ///< what is measured over what the record claims
+  std::array<double, 4> distances; ///< at 50, 25, 10 and 5 % of the triangles
 };
 
+// clang-format off
 constexpr Case kCases[] = {
-  { "plate_hole", false, 2e-3, { 1, 1, 1, 1 } },
-  { "flange", false, 2e-3, { 1, 1, 1, 1 } },
-  { "blade_tip", false, 5e-4, { 1, 1, 1, 1 } },
-  { "grid", false, 5e-4, { 1, 1, 1, 1 } },
-  { "anchor_dense", true, 1e-3, { 1, 1, 1, 1 } },
-  { "rocker_arm", true, 1e-3, { 1, 1, 1, 1 } },
+  // The claim is of samples. On rough and strongly curved surfaces the largest distance lies between
+  // them as long as there are few: measured 1.58, 1.69, 1.21 and 1.37 of what is claimed.
+  { "plate_hole",   false, 2e-3, 1.1,  { 1e-6,   1e-6,   1e-6,   1e-6 } },
+  { "flange",       false, 2e-3, 1.1,  { 1e-6,   1e-6,   8.1e-4, 2.4e-3 } },
+  { "blade_tip",    false, 5e-4, 1.75, { 2.3e-4, 4.4e-4, 1.1e-3, 1.7e-3 } },
+  { "grid",         false, 5e-4, 1.9,  { 6.8e-4, 1.8e-3, 2.8e-3, 4.4e-3 } },
+  { "anchor_dense", true,  1e-3, 1.35, { 1e-6,   4.9e-4, 1.7e-3, 4.1e-3 } },
+  { "rocker_arm",   true,  1e-3, 1.55, { 6.9e-4, 1.2e-3, 2.1e-3, 4.1e-3 } },
 };
+// clang-format on
 
 void PrintTo(const Case& c, std::ostream* out)
 {
@@ -291,7 +294,9 @@ TEST_P(HausdorffTest, ClaimedErrorIsTheMeasuredOne)
 {
   Decimated& d = decimated(GetParam().name);
   ASSERT_FALSE(HasFatalFailure());
+  CGAL::get_default_random() = CGAL::Random(1); // some of the sampling ignores random_seed()
   const Surface original = surface(d.mesh, d.mesh.triangles);
+  const double tooSmall = GetParam().claimTooSmall;
   for (std::size_t i = 0; i < kPercent.size(); ++i)
   {
     const Index wanted = static_cast<Index>(
@@ -309,13 +314,13 @@ TEST_P(HausdorffTest, ClaimedErrorIsTheMeasuredOne)
       original, level, sampling, sampling);
     std::cout << d.mesh.name << " " << kPercent[i] << " %: claimed " << claim << ", bounded "
               << bounded << " +- " << slack << ", sampled " << sampled << ", bound "
-              << GetParam().bounds[i] << std::endl;
+              << GetParam().distances[i] << std::endl;
     EXPECT_LE(sampled, bounded + slack + kRounding) << "CGAL contradicts itself";
-    EXPECT_GE(kClaimTooSmall * claim + slack + kRounding, bounded) << "claims too little";
-    EXPECT_GE(kClaimTooSmall * claim + kRounding, sampled) << "claims too little";
+    EXPECT_GE(tooSmall * claim + slack + kRounding, bounded) << "claims too little";
+    EXPECT_GE(tooSmall * claim + kRounding, sampled) << "claims too little";
     EXPECT_LE(claim, kClaimTooLarge * bounded + slack + kRounding) << "claims too much";
     EXPECT_LE(claim, kClaimTooLarge * sampled + kRounding) << "claims too much";
-    EXPECT_LE(std::max(sampled, bounded - slack), GetParam().bounds[i])
+    EXPECT_LE(std::max(sampled, bounded - slack), GetParam().distances[i])
       << "less accurate than it was";
   }
 }
@@ -435,7 +440,8 @@ double valueError(const Decimated& d)
 // A nodal array steers: its error at the nodes is claimed as well, times the weight.
 TEST(PlateWithStressTest, ClaimedErrorIsTheStressErrorToo)
 {
-  constexpr std::array<double, 4> kBounds = { 1, 1, 1, 1 };
+  constexpr double kClaimTooSmall = 1.1;                                      // measured: 1.00
+  constexpr std::array<double, 4> kBounds = { 2.6e-4, 8e-4, 2.9e-3, 6.1e-3 }; // of the range
   Decimated d;
   d.mesh = readMesh("plate_hole", dataFile("plate_hole.vtp"), "von_mises");
   undecimate::HashQueueDecimationOptions options;
