@@ -99,6 +99,14 @@ def test_menu_category_and_icons(name):
     assert icon.is_file()
 
 
+def test_outputs_are_named_and_only_the_first_is_shown():
+    decimation = simple.HashQueueDecimation(Input=simple.XMLPolyDataReader(FileName=[PLATE]))
+    names = [decimation.SMProxy.GetOutputPortName(i) for i in (0, 1)]
+    view = prototype("HashQueueDecimation").GetHints().FindNestedElementByName("View")
+    assert names == ["Progressive Mesh", "Coarse Mesh"]
+    assert (view.GetAttribute("type"), view.GetAttribute("port")) == ("None", "1")
+
+
 def test_level_has_a_slider_and_can_be_animated():
     level = properties("Undecimation")["Level"]
     domain = level.FindDomain("vtkSMDoubleRangeDomain")
