@@ -88,7 +88,7 @@ void write(vtkFieldData* fields, const char* name, std::vector<Value>& values)
   fields->AddArray(array);
 }
 
-void write(vtkFieldData* fields, const std::string& name, ArrayPointer array)
+void write(vtkFieldData* fields, const std::string& name, const ArrayPointer& array)
 {
   array->SetName((kPrefix + name).c_str());
   fields->AddArray(array);

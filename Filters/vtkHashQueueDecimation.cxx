@@ -151,18 +151,18 @@ std::string describeKept(const HashQueueDecimationResult& result)
 
 struct vtkHashQueueDecimation::Internals
 {
-  PipelinePass Pass;
-  std::vector<std::string> Scalars;
-  std::vector<std::string> Reasons; // one of each kind
-  std::string StopReason;
-  bool SaidTriangulated = false;
+  PipelinePass pass;
+  std::vector<std::string> scalars;
+  std::vector<std::string> reasons; // one of each kind
+  std::string stopReason;
+  bool saidTriangulated = false;
 
   void addReason(const std::string& reason)
   {
-    if (std::find(this->Reasons.begin(), this->Reasons.end(), reason) == this->Reasons.end())
+    if (std::find(this->reasons.begin(), this->reasons.end(), reason) == this->reasons.end())
     {
-      this->Reasons.push_back(reason);
-      this->StopReason += (this->StopReason.empty() ? "" : ", ") + reason;
+      this->reasons.push_back(reason);
+      this->stopReason += (this->stopReason.empty() ? "" : ", ") + reason;
     }
   }
 };
@@ -170,7 +170,7 @@ struct vtkHashQueueDecimation::Internals
 vtkHashQueueDecimation::vtkHashQueueDecimation()
   : Private(std::make_unique<Internals>())
 {
-  this->Private->Pass.watch(this);
+  this->Private->pass.watch(this);
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -178,7 +178,7 @@ vtkHashQueueDecimation::~vtkHashQueueDecimation() = default;
 
 void vtkHashQueueDecimation::AddScalars(const char* name)
 {
-  std::vector<std::string>& names = this->Private->Scalars;
+  std::vector<std::string>& names = this->Private->scalars;
   if (name && *name && std::find(names.begin(), names.end(), name) == names.end())
   {
     names.emplace_back(name);
@@ -188,41 +188,41 @@ void vtkHashQueueDecimation::AddScalars(const char* name)
 
 void vtkHashQueueDecimation::ClearScalars()
 {
-  if (!this->Private->Scalars.empty())
+  if (!this->Private->scalars.empty())
   {
-    this->Private->Scalars.clear();
+    this->Private->scalars.clear();
     this->Modified();
   }
 }
 
 int vtkHashQueueDecimation::GetNumberOfScalars()
 {
-  return static_cast<int>(this->Private->Scalars.size());
+  return static_cast<int>(this->Private->scalars.size());
 }
 
 const char* vtkHashQueueDecimation::GetScalars(int index)
 {
-  return index >= 0 && index < this->GetNumberOfScalars() ? this->Private->Scalars[index].c_str()
+  return index >= 0 && index < this->GetNumberOfScalars() ? this->Private->scalars[index].c_str()
                                                           : nullptr;
 }
 
 const char* vtkHashQueueDecimation::GetStopReason()
 {
-  return this->Private->StopReason.c_str();
+  return this->Private->stopReason.c_str();
 }
 
 int vtkHashQueueDecimation::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (this->Private->Pass.starts(request, inputVector[0]))
+  if (this->Private->pass.starts(request, inputVector[0]))
   {
     this->NumberOfInputNodes = 0;
     this->NumberOfInputTriangles = 0;
     this->NumberOfNodes = 0;
     this->NumberOfTriangles = 0;
     this->Error = 0.0;
-    this->Private->Reasons.clear();
-    this->Private->StopReason.clear();
+    this->Private->reasons.clear();
+    this->Private->stopReason.clear();
   }
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
@@ -305,9 +305,9 @@ vtkSmartPointer<vtkPolyData> vtkHashQueueDecimation::PrepareMesh(vtkPolyData* in
   vtkIdType dropped = 0;
   mesh = triangulated(
     mesh, [this] { return checkAbort(this, 0); }, dropped);
-  if (mesh && !this->Private->SaidTriangulated)
+  if (mesh && !this->Private->saidTriangulated)
   {
-    this->Private->SaidTriangulated = true;
+    this->Private->saidTriangulated = true;
     vtkWarningMacro(<< others.describe()
                     << " of the input were cut into triangles, as Triangulate asks: level 1 of the "
                        "undecimation is the triangulated mesh.");
@@ -325,7 +325,7 @@ bool vtkHashQueueDecimation::Decimate(
 {
   MeshInput view;
   require(view.read(mesh));
-  std::vector<std::string> names = this->Private->Scalars;
+  std::vector<std::string> names = this->Private->scalars;
   // ParaView's Python names arrays of other filters as ['POINTS', name].
   if (!names.empty() && names.front() == "POINTS" && !mesh->GetPointData()->HasArray("POINTS"))
   {
@@ -414,7 +414,7 @@ void vtkHashQueueDecimation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumError: " << this->MaximumError << "\n";
   os << indent << "Criterion: " << this->Criterion << "\n";
   os << indent << "Scalars:";
-  for (const std::string& name : this->Private->Scalars)
+  for (const std::string& name : this->Private->scalars)
   {
     os << " " << name;
   }
@@ -430,5 +430,5 @@ void vtkHashQueueDecimation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfNodes: " << this->NumberOfNodes << "\n";
   os << indent << "NumberOfTriangles: " << this->NumberOfTriangles << "\n";
   os << indent << "Error: " << this->Error << "\n";
-  os << indent << "StopReason: " << this->Private->StopReason << "\n";
+  os << indent << "StopReason: " << this->Private->stopReason << "\n";
 }

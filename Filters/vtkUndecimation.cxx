@@ -26,15 +26,15 @@ vtkStandardNewMacro(vtkUndecimation);
 
 struct vtkUndecimation::Internals
 {
-  PipelinePass Pass;
-  ArrayMemory Memory;
-  UndecimatedMeshCache Meshes;
+  PipelinePass pass;
+  ArrayMemory memory;
+  UndecimatedMeshCache meshes;
 };
 
 vtkUndecimation::vtkUndecimation()
   : Private(std::make_unique<Internals>())
 {
-  this->Private->Pass.watch(this);
+  this->Private->pass.watch(this);
 }
 
 vtkUndecimation::~vtkUndecimation() = default;
@@ -42,10 +42,10 @@ vtkUndecimation::~vtkUndecimation() = default;
 int vtkUndecimation::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (this->Private->Pass.starts(request, inputVector[0]))
+  if (this->Private->pass.starts(request, inputVector[0]))
   {
-    this->Private->Memory.startPass();
-    this->Private->Meshes.startPass();
+    this->Private->memory.startPass();
+    this->Private->meshes.startPass();
     this->NumberOfNodes = 0;
     this->NumberOfTriangles = 0;
     this->Error = 0.0;
@@ -66,13 +66,13 @@ int vtkUndecimation::RequestData(
       output->ShallowCopy(input);
       return 1;
     }
-    if (UndecimatedMesh* mesh = this->Private->Meshes.find(input, problem))
+    if (UndecimatedMesh* mesh = this->Private->meshes.find(input, problem))
     {
       const Undecimation& cursor = mesh->cursor();
       mesh->show(input,
         this->LevelBy == BY_NODES ? cursor.stepsForLevel(this->Level)
                                   : cursor.stepsForError(this->MaximumError),
-        output, this->Private->Memory);
+        output, this->Private->memory);
       output->GetFieldData()->Initialize();
       passFieldData(input->GetFieldData(), output->GetFieldData());
       if (this->OriginalPointIds)
