@@ -755,7 +755,7 @@ TEST(Decimation, ProgressIsMonotoneAndEndsAtOne)
 {
   std::vector<double> progress;
   Decimation filter;
-  filter->SetInputData(plainGrid(80));
+  filter->SetInputData(plainGrid(60));
   vtkNew<vtkCallbackCommand> command;
   command->SetClientData(&progress);
   command->SetCallback([](vtkObject*, unsigned long, void* list, void* fraction)
@@ -770,7 +770,7 @@ TEST(Decimation, ProgressIsMonotoneAndEndsAtOne)
 
 TEST(Decimation, AnAbortGivesNothingWithoutAnError)
 {
-  vtkSmartPointer<vtkPolyData> mesh = plainGrid(120);
+  vtkSmartPointer<vtkPolyData> mesh = plainGrid(60);
   for (double when : { 0.0, 0.1, 0.5, 0.9 })
   {
     Decimation filter;
@@ -809,7 +809,7 @@ TEST(Decimation, AsksForAnAbortAtLeastTenTimesASecond)
     double longest = 0.0;
   } times;
   Decimation filter;
-  filter->SetInputData(plainGrid(250));
+  filter->SetInputData(plainGrid(120));
   vtkNew<vtkCallbackCommand> command;
   command->SetClientData(&times);
   command->SetCallback(
