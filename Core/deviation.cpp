@@ -134,6 +134,7 @@ struct DeviationCriterion::Internals
   // where an array is undefined (NaN) stay open.
   const std::vector<NodalArrayView>& arrays;
   std::vector<double> arrayScales;
+  std::vector<ArrayRange> arrayRanges;
   bool useArrays = false;
   std::vector<unsigned char> undefined; // empty if there is none
 
@@ -209,6 +210,16 @@ struct DeviationCriterion::Internals
   bool prepare(const Hole& hole);
   void gatherSamples(const Hole& hole);
   void addSampleValues(const Hole& hole);
+  // A value of array n in the unit of distances, from its lowest one: neither a large offset nor a
+  // strange unit reaches single precision.
+  float value(std::size_t n, int component, Index node) const
+  {
+    const NodalArrayView& array = this->arrays[n];
+    const double value = array.values[std::size_t{ 1 } * array.components * node + component];
+    return static_cast<float>(
+      this->arrayScales[n] * (value - this->arrayRanges[n].lowest[component]));
+  }
+
   void boundarySquare(const Hole& hole);
   Candidate judge(const Hole& hole, const Triple& t) const;
   struct EdgePlace
@@ -251,7 +262,8 @@ DeviationCriterion::DeviationCriterion(TriangleTopology& topology, const MeshPoi
   {
     for (const NodalArrayView& array : arrays)
     {
-      const double range = arrayRange(array, nodeCount).size;
+      in.arrayRanges.push_back(arrayRange(array, nodeCount));
+      const double range = in.arrayRanges.back().size;
       in.arrayScales.push_back(range > 0.0 ? scalarWeight / range : 0.0);
       in.useArrays = in.useArrays || range > 0.0;
     }
@@ -339,17 +351,16 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
     return;
   }
   this->values.clear();
-  for (const NodalArrayView& array : this->arrays)
+  for (std::size_t n = 0; n < this->arrays.size(); ++n)
   {
-    for (int component = 0; component < array.components; ++component)
+    for (int component = 0; component < this->arrays[n].components; ++component)
     {
       const std::size_t end = this->values.size() + this->sampleRows.size;
-      const float* value = array.values + component;
       for (const Index node : this->sampleNodes)
       {
-        this->values.push_back(value[std::size_t{ 1 } * array.components * node]);
+        this->values.push_back(this->value(n, component, node));
       }
-      this->values.resize(end, value[std::size_t{ 1 } * array.components * hole.node]);
+      this->values.resize(end, this->value(n, component, hole.node));
     }
   }
 }
@@ -432,10 +443,10 @@ double DeviationCriterion::Internals::arraySquare(const EdgePlace& p, const Edge
         const double to = values[std::size_t{ 1 } * array.components * place.to];
         return from + std::clamp(place.fraction, 0.0, 1.0) * (to - from);
       };
-      const double difference = valueAt(p) - valueAt(q);
+      const double difference = this->arrayScales[n] * (valueAt(p) - valueAt(q));
       sum += difference * difference;
     }
-    largest = std::max(largest, this->arrayScales[n] * this->arrayScales[n] * sum);
+    largest = std::max(largest, sum);
   }
   return largest;
 }
@@ -608,14 +619,12 @@ const float* DeviationCriterion::Internals::chunkErrors(
   for (std::size_t n = 0; n < this->arrays.size(); ++n)
   {
     const NodalArrayView& array = this->arrays[n];
-    const float scale = static_cast<float>(this->arrayScales[n] * this->arrayScales[n]);
     std::fill_n(sum, count, 0.0F);
     for (int component = 0; component < array.components;
          ++component, value += this->sampleRows.size)
     {
-      const auto valueAt = [&](int corner) {
-        return array.values[std::size_t{ 1 } * array.components * hole.ring[t[corner]] + component];
-      };
+      const auto valueAt = [&](int corner)
+      { return this->value(n, component, hole.ring[t[corner]]); };
       const float f = valueAt(0);
       const float fb = valueAt(1) - f;
       const float fc = valueAt(2) - f;
@@ -630,8 +639,7 @@ const float* DeviationCriterion::Internals::chunkErrors(
     }
     for (int s = 0; s < count; ++s)
     {
-      const float error = scale * sum[s];
-      largest[s] = largest[s] > error ? largest[s] : error;
+      largest[s] = largest[s] > sum[s] ? largest[s] : sum[s];
     }
   }
   return largest;
@@ -726,13 +734,11 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
   for (std::size_t n = 0; n < this->arrays.size(); ++n)
   {
     const NodalArrayView& array = this->arrays[n];
-    const float scale = static_cast<float>(this->arrayScales[n] * this->arrayScales[n]);
     std::fill_n(sum, size, 0.0F);
     for (int component = 0; component < array.components; ++component, value += size)
     {
-      const auto valueAt = [&](int corner) {
-        return array.values[std::size_t{ 1 } * array.components * hole.ring[t[corner]] + component];
-      };
+      const auto valueAt = [&](int corner)
+      { return this->value(n, component, hole.ring[t[corner]]); };
       const float a = valueAt(0);
       const float ab = valueAt(1) - a;
       const float ac = valueAt(2) - a;
@@ -744,8 +750,7 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
     }
     for (int i = 0; i < size; ++i)
     {
-      const float error = scale * sum[i];
-      errorRow[i] = errorRow[i] > error ? errorRow[i] : error;
+      errorRow[i] = errorRow[i] > sum[i] ? errorRow[i] : sum[i];
     }
   }
 }

@@ -15,6 +15,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 namespace undecimate
@@ -140,7 +141,7 @@ public:
     result.stopReason = StopReason::NoRemovableNode;
     bool tooCostly = false;
     const Index planned = std::max<Index>(1, this->trianglesLeft_ - this->goal_.triangles);
-    for (Index turn = 0; !this->atGoal(result.stopReason); ++turn)
+    for (std::uint64_t turn = 0; !this->atGoal(result.stopReason); ++turn)
     {
       if ((turn & 255) == 0 && !this->reportProgress(planned))
       {
@@ -417,6 +418,16 @@ Outcome checkMesh(const TriangleMeshView& mesh)
         std::to_string(mesh.triangleCount) + " triangles; at most " + std::to_string(kLimit) +
         " and " + std::to_string(kLimit / 4) + " fit into one piece. Split it into blocks." };
   }
+  if (mesh.nodeCount < 0 || mesh.triangleCount < 0)
+  {
+    return { Status::InvalidArgument, "The mesh has a negative number of nodes or triangles." };
+  }
+  if ((mesh.nodeCount > 0 && (mesh.pointsFloat != nullptr) == (mesh.pointsDouble != nullptr)) ||
+    (mesh.triangleCount > 0 && !mesh.triangles))
+  {
+    return { Status::InvalidArgument,
+      "The mesh needs its triangles and exactly one of its two point arrays." };
+  }
   for (std::int64_t i = 0; i < 3 * mesh.triangleCount; ++i)
   {
     if (mesh.triangles[i] < 0 || mesh.triangles[i] >= mesh.nodeCount)
@@ -540,6 +551,15 @@ Outcome decimate(const TriangleMeshView& mesh, const HashQueueDecimationOptions&
   {
     outcome = { Status::OutOfMemory,
       "Not enough memory to decimate " + std::to_string(mesh.nodeCount) + " nodes." };
+  }
+  catch (const std::length_error&)
+  {
+    outcome = { Status::TooLarge, "The record of the decimation would be too large." };
+  }
+  catch (const std::exception& failure)
+  {
+    // Only a callback of the monitor can come to this.
+    outcome = { Status::Cancelled, std::string("Cancelled: ") + failure.what() };
   }
   if (!outcome)
   {

@@ -37,7 +37,7 @@ public:
   using value_type = T;
 
   template <typename Other>
-  struct rebind
+  struct rebind // NOLINT(readability-identifier-naming): the standard library asks for it
   {
     using other = LargeArrayAllocator<Other, Shift>;
   };

@@ -49,6 +49,10 @@ public:
   /// For the core: report a fraction; false when the call has to stop.
   bool update(double fraction)
   {
+    if (this->cancelled_)
+    {
+      return false;
+    }
     // Within a call fractions do not decrease, so a smaller one is the next call's.
     const bool anew = fraction < this->progress_;
     const double done = anew ? 0.0 : this->progress_.load();

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
+#include <stdexcept>
 #include <string>
 
 namespace undecimate
@@ -388,6 +390,10 @@ public:
       }
     }
     const Index number = static_cast<Index>(record.shapeOffsets.size()) - 1;
+    if (record.shapes.size() + size > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    {
+      throw std::length_error("The table of shapes is too large.");
+    }
     this->entries_[i] = { hash, record.shapeOffsets.back(), number };
     record.shapes.insert(record.shapes.end(), shape.begin(), shape.begin() + size);
     record.shapeOffsets.push_back(static_cast<Index>(record.shapes.size()));

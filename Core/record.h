@@ -135,6 +135,7 @@ public:
       nullptr;          ///< newCount, if tracked: old cell whose values it takes
     double error = 0.0; ///< of this step; the record keeps the largest so far
   };
+  /// @throw std::length_error if the table of shapes would pass 2^31 - 1 bytes
   void append(const Step& step);
 
   /// Steps so far.

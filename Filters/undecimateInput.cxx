@@ -8,6 +8,7 @@
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
@@ -18,6 +19,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -66,6 +68,28 @@ void readValues(vtkDataArray* array, std::vector<To>& to)
     vtkTemplateMacro(convert<VTK_TT>(array->GetVoidPointer(0), to));
     default:
       break;
+  }
+}
+
+// The same as single-precision differences to the lowest value of each component: a range that is
+// small beside the values themselves is kept.
+void readDifferences(vtkDataArray* array, std::vector<float>& to)
+{
+  std::vector<double> values;
+  readValues(array, values);
+  const std::size_t components = array->GetNumberOfComponents();
+  to.resize(values.size());
+  for (std::size_t c = 0; c < components; ++c)
+  {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = c; i < values.size(); i += components)
+    {
+      lowest = std::isfinite(values[i]) ? std::min(lowest, values[i]) : lowest;
+    }
+    for (std::size_t i = c; i < values.size(); i += components)
+    {
+      to[i] = static_cast<float>(values[i] - lowest);
+    }
   }
 }
 
@@ -286,6 +310,45 @@ std::string MeshInput::readKept(vtkPolyData* mesh)
   return {};
 }
 
+std::string checkSizes(vtkPolyData* mesh)
+{
+  const auto shortOne = [](vtkDataSetAttributes* data, vtkIdType count, const char* kind,
+                          const char* of) -> std::string
+  {
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* array = data->GetAbstractArray(i);
+      if (array->GetNumberOfTuples() < count)
+      {
+        return std::string(kind) + " array '" + (array->GetName() ? array->GetName() : "") +
+          "' has " + counted(array->GetNumberOfTuples(), "value") + " for " + counted(count, of) +
+          ". Remove the array or repair the input.";
+      }
+    }
+    return {};
+  };
+  std::string problem = shortOne(mesh->GetPointData(), mesh->GetNumberOfPoints(), "Point", "point");
+  if (problem.empty())
+  {
+    problem = shortOne(mesh->GetCellData(), mesh->GetNumberOfCells(), "Cell", "cell");
+  }
+  return problem;
+}
+
+std::string checkFaces(vtkPolyData* mesh)
+{
+  std::vector<unsigned char> flags(mesh->GetNumberOfPoints(), 0);
+  for (vtkCellArray* cells : { mesh->GetPolys(), mesh->GetStrips() })
+  {
+    if (!flagPoints(cells, flags))
+    {
+      return "A face of the input refers to a point outside the " +
+        counted(mesh->GetNumberOfPoints(), "point") + ". Repair the cells of the input.";
+    }
+  }
+  return {};
+}
+
 std::string MeshInput::addArray(vtkPolyData* mesh, const std::string& name)
 {
   vtkPointData* data = mesh->GetPointData();
@@ -316,7 +379,7 @@ std::string MeshInput::addArray(vtkPolyData* mesh, const std::string& name)
   else
   {
     this->values_.emplace_back();
-    readValues(array, this->values_.back());
+    readDifferences(array, this->values_.back());
     view.values = this->values_.back().data();
   }
   this->arrays_.push_back(view);

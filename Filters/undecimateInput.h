@@ -46,6 +46,12 @@ OtherFaces countOtherFaces(vtkPolyData* mesh);
 vtkSmartPointer<vtkPolyData> triangulated(
   vtkPolyData* mesh, const std::function<bool()>& cancelled, vtkIdType& dropped);
 
+/// What is wrong with the lengths of a mesh's arrays; empty if nothing.
+std::string checkSizes(vtkPolyData* mesh);
+
+/// What is wrong with the points of a mesh's polygons and strips; empty if nothing.
+std::string checkFaces(vtkPolyData* mesh);
+
 /// The mesh as Core's decimators want it. Points and arrays that fit are used where they lie.
 class MeshInput
 {

@@ -92,7 +92,9 @@ void ArrayMemory::allocate(vtkAbstractArray* array, vtkIdType tuples)
   {
     // Room for levels a little finer; pages that are not touched are not there.
     const std::size_t capacity = bytes + bytes / 4;
-    void* memory = std::malloc(sizeof(Block) + capacity);
+    const std::size_t whole =
+      (sizeof(Block) + capacity + alignof(Block) - 1) / alignof(Block) * alignof(Block);
+    void* memory = std::aligned_alloc(alignof(Block), whole);
     if (!memory)
     {
       throw std::bad_alloc();

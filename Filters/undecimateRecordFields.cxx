@@ -412,7 +412,7 @@ std::string compareMesh(vtkPolyData* mesh, FieldReader& reader, RecordFields& re
   std::string text = compareCells(mesh, header);
   const std::string arrays = compareArrays(mesh, reader, record);
   text += (text.empty() || arrays.empty() ? "" : "; ") + arrays;
-  if (signedBits(fingerprint(pointsOf(mesh))) != header[kPointsFingerprint])
+  if (!pointsOf(mesh) || signedBits(fingerprint(pointsOf(mesh))) != header[kPointsFingerprint])
   {
     text += (text.empty() ? "" : "; ") +
       std::string("the coordinates of its points or their type changed");

@@ -15,6 +15,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -27,6 +28,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <new>
 #include <sstream>
 #include <string>
@@ -41,7 +43,6 @@ namespace
 {
 
 constexpr double kCoreShare = 0.95; // of the progress; the rest is for the output
-constexpr double kRightAngle = 90.0;
 
 // Thrown for a request that cannot be met; the text is the error message.
 struct BrokenRequest
@@ -233,14 +234,24 @@ int vtkHashQueueDecimation::RequestData(
   vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector, PROGRESSIVE_MESH);
   vtkPolyData* bare = vtkPolyData::GetData(outputVector, COARSE_MESH);
-  vtkInformation* outInfo = outputVector->GetInformationObject(0);
-  const bool pieces = outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  // Whichever output is asked for: both must fit the neighbouring pieces.
+  bool pieces = false;
+  for (int port = 0; port < outputVector->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* outInfo = outputVector->GetInformationObject(port);
+    pieces =
+      pieces || outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  }
   try
   {
     if (isEmpty(input))
     {
-      output->ShallowCopy(input);
-      bare->ShallowCopy(input);
+      for (vtkPolyData* empty : { output, bare })
+      {
+        empty->ShallowCopy(input);
+        empty->GetFieldData()->Initialize();
+        passFieldData(input->GetFieldData(), empty->GetFieldData());
+      }
       return 1;
     }
     vtkSmartPointer<vtkPolyData> mesh = this->PrepareMesh(input);
@@ -279,6 +290,12 @@ vtkSmartPointer<vtkPolyData> vtkHashQueueDecimation::PrepareMesh(vtkPolyData* in
 {
   auto mesh = vtkSmartPointer<vtkPolyData>::New();
   mesh->ShallowCopy(input);
+  require(checkSizes(mesh));
+  if (!mesh->GetPoints())
+  {
+    vtkNew<vtkPoints> none;
+    mesh->SetPoints(none);
+  }
   if (this->OriginalPointIds && mesh->GetPointData()->HasArray(kOriginalPointIds))
   {
     vtkWarningMacro("The input's point array '"
@@ -302,6 +319,7 @@ vtkSmartPointer<vtkPolyData> vtkHashQueueDecimation::PrepareMesh(vtkPolyData* in
       "; the decimation needs triangles. Turn on the property Triangulate to cut them into "
       "triangles, or apply the filter Triangulate first.");
   }
+  require(checkFaces(mesh));
   vtkIdType dropped = 0;
   mesh = triangulated(
     mesh, [this] { return checkAbort(this, 0); }, dropped);
@@ -345,10 +363,10 @@ bool vtkHashQueueDecimation::Decimate(
   options.targetReduction = this->TargetReduction;
   options.targetNodes = this->TargetNodes;
   options.targetTriangles = this->TargetTriangles;
-  // 1 means no limit for every criterion, so that the default does not limit angles to a degree.
-  options.maximumError = this->Criterion == ANGLE_TO_XY_PLANE && this->MaximumError == 1.0
-    ? kRightAngle
-    : this->MaximumError;
+  // The default 1 is no limit for any criterion; for fractions, nor is what is more.
+  const bool noLimit =
+    this->Criterion == ANGLE_TO_XY_PLANE ? this->MaximumError == 1.0 : this->MaximumError >= 1.0;
+  options.maximumError = noLimit ? std::numeric_limits<double>::infinity() : this->MaximumError;
   options.intervalSpacing = static_cast<undecimate::IntervalSpacing>(this->IntervalSpacing);
   options.intervalNodes = this->IntervalNodes;
   options.preserveBoundary = this->PreserveBoundary || pieces;

@@ -64,6 +64,8 @@ int vtkUndecimation::RequestData(
     if (input->GetNumberOfPoints() == 0 && input->GetNumberOfCells() == 0)
     {
       output->ShallowCopy(input);
+      output->GetFieldData()->Initialize();
+      passFieldData(input->GetFieldData(), output->GetFieldData());
       return 1;
     }
     if (UndecimatedMesh* mesh = this->Private->meshes.find(input, problem))

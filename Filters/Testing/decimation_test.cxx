@@ -536,6 +536,109 @@ TEST(Decimation, EmptyInputGivesEmptyOutputSilently)
   }
 }
 
+TEST(Decimation, AnEmptyMeshDoesNotCarryAnOldRecordOn)
+{
+  vtkSmartPointer<vtkPolyData> emptied = decimated(makeGrid(), 0.5);
+  vtkNew<vtkPolyData> mesh;
+  mesh->GetFieldData()->ShallowCopy(emptied->GetFieldData());
+  Decimation filter;
+  filter->SetInputData(mesh);
+  vtkNew<vtkUndecimation> undecimation;
+  undecimation->SetInputData(mesh);
+  undecimation->Update();
+  for (vtkPolyData* output : { filter.output(), filter.output(1), undecimation->GetOutput() })
+  {
+    EXPECT_NE(output->GetFieldData()->GetAbstractArray("note"), nullptr);
+    EXPECT_EQ(output->GetFieldData()->GetNumberOfArrays(), 1);
+  }
+}
+
+TEST(Decimation, RefusesArraysThatAreTooShort)
+{
+  vtkSmartPointer<vtkPolyData> mesh = plainGrid();
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("half");
+  values->SetNumberOfTuples(mesh->GetNumberOfPoints() / 2);
+  values->Fill(1.0);
+  mesh->GetPointData()->AddArray(values);
+  Decimation point;
+  expectError(point, mesh, { "Point array 'half'", std::to_string(mesh->GetNumberOfPoints()) });
+  mesh->GetPointData()->RemoveArray("half");
+  mesh->GetCellData()->AddArray(values);
+  Decimation cell;
+  expectError(cell, mesh, { "Cell array 'half'", std::to_string(mesh->GetNumberOfCells()) });
+}
+
+TEST(Decimation, RefusesFacesToCutWithPointsThatDoNotExist)
+{
+  Decimation filter;
+  filter->TriangulateOn();
+  expectError(filter, makeMesh({ 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0 }, { { 0, 1, 2, 2000000 } }),
+    { "outside the 4 points" });
+}
+
+TEST(Decimation, AVertexCellWithoutPointsPassesThrough)
+{
+  vtkNew<vtkPolyData> mesh;
+  vtkNew<vtkCellArray> verts;
+  verts->InsertNextCell(0);
+  mesh->SetVerts(verts);
+  Decimation filter;
+  filter->SetInputData(mesh);
+  EXPECT_EQ(filter.output()->GetNumberOfVerts(), 1);
+}
+
+// Pressure in Pa: the range is far below the values' own single precision.
+TEST(Decimation, ScalarsWithALargeOffsetSteerAsWell)
+{
+  const auto errorWith = [](double offset, double size)
+  {
+    vtkSmartPointer<vtkPolyData> mesh = plainGrid(21);
+    vtkNew<vtkDoubleArray> bump;
+    bump->SetName("bump");
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+    {
+      const double x = static_cast<double>(i % 21);
+      const double y = static_cast<double>(i / 21);
+      mesh->GetPoints()->SetPoint(i, x, y, 0.0);
+      const double square = (x - 10.0) * (x - 10.0) + (y - 10.0) * (y - 10.0);
+      bump->InsertNextValue(offset + size * std::exp(-0.05 * square));
+    }
+    mesh->GetPointData()->AddArray(bump);
+    Decimation filter;
+    filter->SetInputData(mesh);
+    filter->AddScalars("bump");
+    filter.output();
+    return filter->GetError();
+  };
+  const double plain = errorWith(0.0, 1.0);
+  EXPECT_GT(plain, 1e-4);
+  EXPECT_NEAR(errorWith(101325.0, 0.01), plain, 0.05 * plain);
+  EXPECT_NEAR(errorWith(0.0, 1e30), plain, 0.05 * plain);
+  EXPECT_NEAR(errorWith(0.0, 1e-30), plain, 0.05 * plain);
+}
+
+TEST(Decimation, ADefaultMaximumErrorIsNoLimitWhateverTheWeight)
+{
+  Decimation filter;
+  filter->SetInputData(makeGrid());
+  vtkPolyData* mesh = vtkPolyData::SafeDownCast(filter->GetInputDataObject(0, 0));
+  for (int i = 0; i < mesh->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = mesh->GetPointData()->GetArray(i);
+    if (array && array->GetName() && array->GetNumberOfComponents() == 1)
+    {
+      filter->AddScalars(array->GetName());
+    }
+  }
+  ASSERT_GT(filter->GetNumberOfScalars(), 0);
+  filter->SetScalarWeight(1000.0);
+  filter->SetTargetReduction(0.95);
+  filter.output();
+  EXPECT_GT(filter->GetError(), 1.0);
+  EXPECT_STREQ(filter->GetStopReason(), "target reduction");
+}
+
 TEST(Decimation, PointsWithoutTrianglesPassThrough)
 {
   vtkSmartPointer<vtkPolyData> mesh = makeMesh({ 0, 0, 0, 1, 2, 3 }, {});
@@ -663,6 +766,17 @@ TEST(Decimation, PreservesTheBoundaryOnRequestAndInPieces)
   filter->UpdatePiece(0, 4, 0);
   EXPECT_TRUE(keepsAll(filter->GetOutput()));
   expectRoundTrip(filter->GetOutput(), mesh);
+  // Whoever shows the bare mesh only must not get cracks.
+  Decimation bare;
+  bare->SetInputData(mesh);
+  bare->OriginalPointIdsOn();
+  bare->SetTargetReduction(0.7);
+  bare->UpdateInformation();
+  vtkInformation* request = bare->GetOutputInformation(vtkHashQueueDecimation::COARSE_MESH);
+  request->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 4);
+  request->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+  bare->Update(vtkHashQueueDecimation::COARSE_MESH);
+  EXPECT_TRUE(keepsAll(bare->GetOutput(vtkHashQueueDecimation::COARSE_MESH)));
 }
 
 TEST(Decimation, KeepsNodesOfGhosts)
