@@ -65,7 +65,7 @@ private:
 ///
 /// The next node is the first of the lowest non-empty interval; within an interval nodes leave in
 /// the order in which they came, which spreads the removals over the mesh ([K03] 1.2). Doubly
-/// linked lists in flat arrays, and a three-level bit set that finds the lowest non-empty interval.
+/// linked lists in flat arrays, and a four-level bit set that finds the lowest non-empty interval.
 ///
 /// Memory: 12 bytes a node and 8 bytes an interval.
 class HashQueue

@@ -28,7 +28,8 @@
 /// cells and new cells). Kept here as shapes, which needs a third of the memory of the lists.
 ///
 /// Memory: about 36 bytes a removed node on triangle meshes (shape 4, slots 16, error 4, original
-/// numbers 12), plus the shape table (tens to hundreds of KiB).
+/// numbers 12), plus the table of shapes: 1 to 10 bytes a removed node where nodes have about six
+/// neighbours, up to 75 where an order that ignores the mesh (Angle to XY Plane) gives them many.
 
 #ifndef UNDECIMATE_CORE_RECORD_H
 #define UNDECIMATE_CORE_RECORD_H

@@ -18,7 +18,7 @@ namespace undecimate
 {
 
 /// Node and cell numbers are 32-bit: memory traffic is what bounds the speed. A piece with more
-/// than 2^31 - 1 nodes or corners is refused with Status::TooLarge.
+/// than 2^31 - 1 nodes or 2^29 - 1 triangles is refused with Status::TooLarge.
 using Index = std::int32_t;
 
 /// No node or no cell.
@@ -31,7 +31,7 @@ enum class Status
   Cancelled,       ///< the monitor asked to stop; outputs are empty
   InvalidArgument, ///< an option or an array does not fit; the message names it
   InvalidRecord,   ///< the record is damaged or of a future version; the message says where
-  TooLarge,        ///< more than 2^31 - 1 nodes or corners
+  TooLarge,        ///< more nodes, triangles or shapes of steps than 32-bit numbers allow
   OutOfMemory      ///< an allocation failed; outputs are empty
 };
 

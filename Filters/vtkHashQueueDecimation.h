@@ -110,8 +110,8 @@ public:
   /**
    * No removal with a larger error is made. In the unit of the criterion: a fraction of the
    * diagonal of the bounding box (Deviation) or of the array's range (Scalar Difference), where 1
-   * is no limit, or degrees (Angle to XY Plane), where 90 is no limit, and so is exactly 1, being
-   * the default. At least 0. Default is 1.
+   * or more is no limit, or degrees (Angle to XY Plane), where 90 is no limit, and so is exactly 1,
+   * being the default. At least 0. Default is 1.
    */
   vtkSetClampMacro(MaximumError, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumError, double);
