@@ -394,7 +394,10 @@ ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType le
   if (isBlock(from) && isBlock(to))
   {
     const std::size_t size = tupleBytes(from);
-    std::memcpy(bytes(to), bytes(from), size * leading);
+    if (leading > 0)
+    {
+      std::memcpy(bytes(to), bytes(from), size * leading);
+    }
     gatherBlock(bytes(to) + size * leading, bytes(from) + size * leading, size, numbers, count);
     return to;
   }
@@ -410,7 +413,10 @@ ArrayPointer join(vtkAbstractArray* base, vtkIdType baseCount, vtkAbstractArray*
   if (isBlock(base) && isBlock(to) && (restCount == 0 || isBlock(rest)))
   {
     const std::size_t size = tupleBytes(base);
-    std::memcpy(bytes(to), bytes(base), size * baseCount);
+    if (baseCount > 0)
+    {
+      std::memcpy(bytes(to), bytes(base), size * baseCount);
+    }
     if (restCount > 0)
     {
       std::memcpy(bytes(to) + size * baseCount, bytes(rest), size * restCount);
