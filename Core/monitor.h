@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <utility>
 
@@ -80,6 +81,48 @@ private:
   Clock::time_point asked_ = Clock::now();
   std::atomic<bool> cancelled_{ false };
   std::atomic<double> progress_{ 0.0 };
+};
+
+/// A part of a call: fractions from 0 to 1 of the part are those from `begin` to `end` of the call.
+/// Without a monitor nothing is reported and nothing cancels.
+class MonitorShare
+{
+public:
+  explicit MonitorShare(Monitor* monitor, double begin = 0.0, double end = 1.0)
+    : monitor_(monitor)
+    , begin_(begin)
+    , end_(end)
+  {
+  }
+
+  /// A part of this part.
+  MonitorShare part(double begin, double end) const
+  {
+    return MonitorShare(this->monitor_, this->at(begin), this->at(end));
+  }
+
+  /// As Monitor::update().
+  bool update(double fraction) const
+  {
+    return !this->monitor_ || this->monitor_->update(this->at(fraction));
+  }
+
+  /// For loops over many small things: asks the monitor once in a while only.
+  /// @param done, count the loop is at index `done` of `count`
+  bool updateAt(std::int64_t done, std::int64_t count) const
+  {
+    return done % kInterval != 0 ||
+      this->update(static_cast<double>(done) / static_cast<double>(count));
+  }
+
+private:
+  static constexpr std::int64_t kInterval = 1 << 14;
+
+  double at(double fraction) const { return this->begin_ + (this->end_ - this->begin_) * fraction; }
+
+  Monitor* monitor_;
+  double begin_;
+  double end_;
 };
 
 } // namespace undecimate

@@ -109,6 +109,38 @@ TEST(Monitor, CallbackMayCancel)
   EXPECT_TRUE(monitor.cancelled());
 }
 
+TEST(MonitorShare, IsAPartOfTheWhole)
+{
+  Monitor monitor([](double fraction) { return fraction < 0.75; });
+  const MonitorShare half = MonitorShare(&monitor).part(0.5, 1.0);
+  EXPECT_TRUE(half.update(0.2));
+  EXPECT_NEAR(monitor.progress(), 0.6, 1e-12);
+  EXPECT_FALSE(half.part(0.5, 1.0).update(0.0));
+  EXPECT_NEAR(monitor.progress(), 0.75, 1e-12);
+}
+
+TEST(MonitorShare, AsksOnceInAWhile)
+{
+  int calls = 0;
+  Monitor monitor(
+    [&calls](double)
+    {
+      ++calls;
+      return false;
+    });
+  const MonitorShare share(&monitor, 0.1, 1.0);
+  EXPECT_TRUE(share.updateAt(1, 100000));
+  EXPECT_EQ(calls, 0);
+  EXPECT_FALSE(share.updateAt(0, 100000));
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(MonitorShare, WithoutAMonitorNothingCancels)
+{
+  EXPECT_TRUE(MonitorShare(nullptr).update(0.5));
+  EXPECT_TRUE(MonitorShare(nullptr).part(0.5, 1.0).updateAt(0, 1));
+}
+
 // ---------------------------------------------------------------------------------------------
 // What a decimation does with it
 // ---------------------------------------------------------------------------------------------

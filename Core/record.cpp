@@ -30,6 +30,11 @@ Outcome damaged(const char* array, std::int64_t entry, const char* why)
       ": " + why + "." };
 }
 
+Outcome cancelled()
+{
+  return { Status::Cancelled, "Cancelled." };
+}
+
 Outcome checkPresence(const RecordView& record, const Index* baseCells)
 {
   struct Array
@@ -58,11 +63,16 @@ Outcome checkPresence(const RecordView& record, const Index* baseCells)
   return {};
 }
 
-Outcome checkPermutation(const Index* order, Index count, const char* name)
+Outcome checkPermutation(
+  const Index* order, Index count, const char* name, const MonitorShare& progress)
 {
   std::vector<bool> seen(count, false);
   for (Index i = 0; i < count; ++i)
   {
+    if (!progress.updateAt(i, count))
+    {
+      return cancelled();
+    }
     if (order[i] < 0 || order[i] >= count || seen[order[i]])
     {
       return damaged(name, i, "not a permutation");
@@ -149,13 +159,17 @@ int lostSourceCount(const unsigned char* shape, int corners)
   return oldCount - __builtin_popcountll(heirs);
 }
 
-Outcome checkSteps(const RecordView& record)
+Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
 {
   std::int64_t position = 0;
   std::int64_t lost = 0;
   std::int64_t cells = record.baseCellCount;
   for (Index step = 0; step < record.stepCount; ++step)
   {
+    if (!progress.updateAt(step, record.stepCount))
+    {
+      return cancelled();
+    }
     const Index shape = record.stepShapes[step];
     if (shape < 0 || shape >= record.shapeCount)
     {
@@ -296,7 +310,8 @@ std::size_t Record::byteSize() const
     sizeof(float) * this->stepErrors.size() + this->shapes.size();
 }
 
-Outcome validateRecord(const RecordView& record, const Index* baseCells)
+Outcome validateRecord(
+  const RecordView& record, const Index* baseCells, const MonitorShare& progress)
 {
   if (record.nodeCount < 0 || record.cellCount < 0 || record.baseNodeCount < 0 ||
     record.baseCellCount < 0 || record.shapeCount < 0 || record.patchSize < 0 ||
@@ -310,11 +325,15 @@ Outcome validateRecord(const RecordView& record, const Index* baseCells)
   {
     return o;
   }
-  if (Outcome o = checkPermutation(record.nodeOrder, record.nodeCount, "NodeOrder"); !o)
+  if (Outcome o =
+        checkPermutation(record.nodeOrder, record.nodeCount, "NodeOrder", progress.part(0.0, 0.2));
+      !o)
   {
     return o;
   }
-  if (Outcome o = checkPermutation(record.cellOrder, record.cellCount, "CellOrder"); !o)
+  if (Outcome o =
+        checkPermutation(record.cellOrder, record.cellCount, "CellOrder", progress.part(0.2, 0.5));
+      !o)
   {
     return o;
   }
@@ -358,7 +377,7 @@ Outcome validateRecord(const RecordView& record, const Index* baseCells)
       return o;
     }
   }
-  return checkSteps(record);
+  return checkSteps(record, progress.part(0.5, 1.0));
 }
 
 namespace

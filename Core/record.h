@@ -34,6 +34,7 @@
 #ifndef UNDECIMATE_CORE_RECORD_H
 #define UNDECIMATE_CORE_RECORD_H
 
+#include "monitor.h"
 #include "types.h"
 
 #include <memory>
@@ -108,9 +109,11 @@ struct Record
 /// Check that a record can be walked without ever leaving its arrays or those of the mesh, whatever
 /// its bytes are: counts, ranges, shapes, order of the errors, permutations.
 /// @param baseCells cornersPerCell * baseCellCount node numbers in record order
-/// @return InvalidRecord with the array and the entry that is wrong
+/// @param progress of this call, and cancel
+/// @return InvalidRecord with the array and the entry that is wrong, Cancelled or Ok
 /// Complexity: O(record).
-Outcome validateRecord(const RecordView& record, const Index* baseCells);
+Outcome validateRecord(const RecordView& record, const Index* baseCells,
+  const MonitorShare& progress = MonitorShare(nullptr));
 
 /// Written by a decimator, step by step, in original numbers; finish() turns it into record order.
 class RecordBuilder

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <new>
 #include <string>
 
@@ -40,40 +41,64 @@ struct Shape
 
 } // namespace
 
-Outcome Undecimation::open(const RecordView& record, const Index* baseCells)
+Outcome Undecimation::open(const RecordView& record, const Index* baseCells, Monitor* monitor)
 {
   *this = Undecimation();
+  Outcome outcome;
   try
   {
-    if (Outcome o = validateRecord(record, baseCells); !o)
-    {
-      return o;
-    }
-    this->cells_.resize(std::size_t{ kCorners } * record.cellCount);
-    this->sources_.resize(record.hasSources ? record.cellCount : 0);
+    outcome = this->check(record, baseCells, MonitorShare(monitor));
   }
   catch (const std::bad_alloc&)
   {
-    *this = Undecimation();
-    return { Status::OutOfMemory, "Not enough memory to open the record." };
+    outcome = { Status::OutOfMemory, "Not enough memory to open the record." };
   }
+  catch (const std::exception& failure)
+  {
+    outcome = { Status::Cancelled, std::string("Cancelled: ") + failure.what() };
+  }
+  catch (...)
+  {
+    outcome = { Status::Cancelled, "Cancelled by an unknown exception." };
+  }
+  if (!outcome)
+  {
+    *this = Undecimation();
+  }
+  return outcome;
+}
+
+// The work of open(): take the record and the cells, and walk to the finest level and back.
+Outcome Undecimation::check(
+  const RecordView& record, const Index* baseCells, const MonitorShare& progress)
+{
+  constexpr double validation = 0.3; // of the time
+  if (Outcome o = validateRecord(record, baseCells, progress.part(0.0, validation)); !o)
+  {
+    return o;
+  }
+  this->cells_.resize(std::size_t{ kCorners } * record.cellCount);
+  this->sources_.resize(record.hasSources ? record.cellCount : 0);
   this->record_ = record;
   this->standAtBase(baseCells);
   // Whether the steps fit together shows only when they are walked.
+  const MonitorShare walk = progress.part(validation, 1.0);
   while (this->steps_ < record.stepCount)
   {
+    if (!walk.updateAt(this->steps_, record.stepCount))
+    {
+      return { Status::Cancelled, "Cancelled." };
+    }
     if (!this->isNextStepSound())
     {
-      const Index step = this->steps_;
-      *this = Undecimation();
       return { Status::InvalidRecord,
-        "Record array 'Patches' is damaged: step " + std::to_string(step) +
+        "Record array 'Patches' is damaged: step " + std::to_string(this->steps_) +
           " does not fit the cells of its level." };
     }
     this->refine();
   }
   this->standAtBase(baseCells);
-  return {};
+  return walk.update(1.0) ? Outcome{} : Outcome{ Status::Cancelled, "Cancelled." };
 }
 
 void Undecimation::standAtBase(const Index* baseCells)
@@ -120,9 +145,37 @@ bool Undecimation::isNextStepSound() const
   return true;
 }
 
-void Undecimation::moveTo(Index steps)
+bool Undecimation::moveTo(Index steps, Monitor* monitor)
 {
   const Index goal = std::clamp<Index>(steps, 0, this->record_.stepCount);
+  if (!monitor)
+  {
+    this->walkTo(goal);
+    return true;
+  }
+  constexpr Index pace = 1 << 14; // steps between two looks at the monitor
+  const Index start = this->steps_;
+  try
+  {
+    while (this->steps_ != goal)
+    {
+      if (!monitor->update(static_cast<double>(this->steps_ - start) / (goal - start)))
+      {
+        return false;
+      }
+      this->walkTo(std::clamp(goal, this->steps_ - std::min(pace, this->steps_),
+        this->steps_ + std::min(pace, this->record_.stepCount - this->steps_)));
+    }
+    return monitor->update(1.0);
+  }
+  catch (...)
+  {
+    return false;
+  }
+}
+
+void Undecimation::walkTo(Index goal)
+{
   while (this->steps_ < goal)
   {
     this->refine();

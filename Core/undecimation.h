@@ -10,6 +10,7 @@
 #ifndef UNDECIMATE_CORE_UNDECIMATION_H
 #define UNDECIMATE_CORE_UNDECIMATION_H
 
+#include "monitor.h"
 #include "record.h"
 
 #include <vector>
@@ -29,12 +30,17 @@ public:
   /// have. Complexity: O(record); walks it once.
   /// @param record the record
   /// @param baseCells the cells of the coarsest level, in record order; copied
-  /// @return InvalidRecord, OutOfMemory or Ok; unless Ok the cursor is closed
-  Outcome open(const RecordView& record, const Index* baseCells);
+  /// @param monitor progress and cancel; null: neither
+  /// @return InvalidRecord, OutOfMemory, Cancelled or Ok; unless Ok the cursor is closed
+  /// Throws nothing: exceptions of the monitor's callback end the call as Cancelled.
+  Outcome open(const RecordView& record, const Index* baseCells, Monitor* monitor = nullptr);
 
   /// Go to the level at which `steps` removed nodes are back (clamped to [0, stepCount]).
   /// Complexity: O(|steps - current|).
-  void moveTo(Index steps);
+  /// @param monitor progress and cancel; null: neither
+  /// @return false if it was cancelled: the cursor then stands, whole, at a level on the way
+  /// Throws nothing: exceptions of the monitor's callback end the call as cancelled.
+  bool moveTo(Index steps, Monitor* monitor = nullptr);
 
   /// Steps at a level: a fraction of the removed nodes, in [0, 1] (clamped; NaN counts as 0).
   Index stepsForLevel(double level) const;
@@ -63,6 +69,8 @@ public:
   const RecordView& record() const { return this->record_; }
 
 private:
+  Outcome check(const RecordView& record, const Index* baseCells, const MonitorShare& progress);
+  void walkTo(Index goal);
   void standAtBase(const Index* baseCells);
   bool isNextStepSound() const;
   void refine();

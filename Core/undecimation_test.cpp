@@ -7,9 +7,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace undecimate
 {
@@ -327,6 +331,113 @@ TEST(Undecimation, CornersWithOneTriangle)
   ASSERT_GT(decimated.steps(), 0);
   decimated.cursor.moveTo(decimated.steps());
   EXPECT_TRUE(testing::isOriginal(decimated.cursor, mesh));
+}
+
+// ---------------------------------------------------------------------------------------------
+// Progress and cancel
+// ---------------------------------------------------------------------------------------------
+
+class MonitoredUndecimation : public ::testing::Test
+{
+protected:
+  MonitoredUndecimation()
+    : mesh(testing::hills(250, 250))
+    , coarse(mesh, options())
+  {
+  }
+
+  static HashQueueDecimationOptions options()
+  {
+    HashQueueDecimationOptions options;
+    options.criterion = Criterion::AngleToXYPlane;
+    options.targetReduction = 0.99;
+    options.trackCellSources = true;
+    return options;
+  }
+
+  Outcome open(Undecimation& cursor, Monitor* monitor) const
+  {
+    return cursor.open(
+      this->coarse.result.record.view(), this->coarse.result.baseTriangles.data(), monitor);
+  }
+
+  Level levelAt(Index steps)
+  {
+    this->coarse.cursor.moveTo(steps);
+    return Level(this->coarse.cursor);
+  }
+
+  Mesh mesh;
+  Decimated coarse;
+};
+
+TEST_F(MonitoredUndecimation, ProgressIncreasesToOne)
+{
+  std::vector<double> seen;
+  Monitor monitor(
+    [&](double fraction)
+    {
+      seen.push_back(fraction);
+      return true;
+    });
+  Undecimation cursor;
+  const auto expectProgress = [&seen]
+  {
+    EXPECT_GE(seen.size(), 4U);
+    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    EXPECT_EQ(seen.back(), 1.0);
+    seen.clear();
+  };
+  ASSERT_TRUE(this->open(cursor, &monitor));
+  expectProgress();
+  for (const Index steps : { cursor.stepCount(), Index{ 0 } })
+  {
+    EXPECT_TRUE(cursor.moveTo(steps, &monitor));
+    expectProgress();
+    EXPECT_EQ(Level(cursor), this->levelAt(steps));
+  }
+}
+
+TEST_F(MonitoredUndecimation, OpeningIsCancelledInEachOfItsParts)
+{
+  for (const double stop : { 0.01, 0.1, 0.2, 0.5, 0.9, 1.0 })
+  {
+    Monitor monitor([stop](double fraction) { return fraction < stop; });
+    Undecimation cursor;
+    EXPECT_EQ(this->open(cursor, &monitor).status, Status::Cancelled) << stop;
+    EXPECT_EQ(cursor.stepCount(), 0) << "closed";
+    EXPECT_TRUE(this->open(cursor, nullptr));
+    EXPECT_EQ(Level(cursor), this->levelAt(0));
+  }
+}
+
+TEST_F(MonitoredUndecimation, AMoveThatIsCancelledStandsAtAWholeLevel)
+{
+  Undecimation cursor;
+  ASSERT_TRUE(this->open(cursor, nullptr));
+  for (const double stop : { 0.0, 0.3, 0.6, 1.0 })
+  {
+    for (const Index goal : { cursor.stepCount(), Index{ 0 } })
+    {
+      Monitor monitor([stop](double fraction) { return fraction < stop; });
+      EXPECT_FALSE(cursor.moveTo(goal, &monitor)) << stop;
+      EXPECT_EQ(Level(cursor), this->levelAt(cursor.steps()));
+      EXPECT_TRUE(cursor.moveTo(goal));
+      EXPECT_EQ(Level(cursor), this->levelAt(goal));
+    }
+  }
+}
+
+TEST_F(MonitoredUndecimation, AThrowingCallbackCancels)
+{
+  Monitor monitor([](double) -> bool { throw std::runtime_error("no more"); });
+  Undecimation cursor;
+  const Outcome outcome = this->open(cursor, &monitor);
+  EXPECT_EQ(outcome.status, Status::Cancelled);
+  EXPECT_NE(outcome.message.find("no more"), std::string::npos);
+  ASSERT_TRUE(this->open(cursor, nullptr));
+  EXPECT_FALSE(cursor.moveTo(cursor.stepCount(), &monitor));
+  EXPECT_EQ(Level(cursor), this->levelAt(cursor.steps()));
 }
 
 } // namespace
