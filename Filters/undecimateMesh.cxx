@@ -25,6 +25,30 @@ namespace filters
 namespace
 {
 
+// Shares of the time of the first output of an input: until the record is found to be whole and to
+// belong to the mesh, and until the cursor stands.
+constexpr double kRead = 0.2;
+constexpr double kOpened = 0.7;
+
+// Counts the arrays of an output as they are filled.
+class ArrayProgress
+{
+public:
+  ArrayProgress(Monitor& monitor, const RecordFields& record)
+    : monitor_(monitor)
+    , count_(static_cast<double>(1 + record.pointArrays.size() + record.cellArrays.size()))
+  {
+  }
+
+  /// False if it was cancelled.
+  bool arrayDone() { return this->monitor_.update(++this->done_ / this->count_); }
+
+private:
+  Monitor& monitor_;
+  double count_; // points and cells count as one
+  double done_ = 0.0;
+};
+
 vtkSmartPointer<vtkPoints> makePoints(const ArrayPointer& coordinates)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -41,16 +65,21 @@ bool fits(vtkCellArray* cells, vtkIdType pointCount)
 
 } // namespace
 
-std::string UndecimatedMesh::open(vtkPolyData* coarse)
+std::string UndecimatedMesh::open(vtkPolyData* coarse, PassMonitor& monitor)
 {
   *this = UndecimatedMesh();
-  if (std::string problem = readRecord(coarse, this->record_); !problem.empty())
+  if (std::string problem = readRecord(coarse, this->record_, monitor.part(kRead));
+      !problem.empty() || monitor.cancelled())
   {
     return problem;
   }
-  const Outcome outcome =
-    this->cursor_.open(this->record_.view, this->record_.baseTriangles.data());
+  const Outcome outcome = this->cursor_.open(
+    this->record_.view, this->record_.baseTriangles.data(), &monitor.part(kOpened));
   std::vector<Index>().swap(this->record_.baseTriangles);
+  if (outcome.status == Status::Cancelled)
+  {
+    return {};
+  }
   if (!outcome)
   {
     return outcome.message +
@@ -66,28 +95,30 @@ std::string UndecimatedMesh::open(vtkPolyData* coarse)
   return {};
 }
 
-void UndecimatedMesh::show(
-  vtkPolyData* coarse, Index steps, vtkPolyData* output, ArrayMemory& memory)
+bool UndecimatedMesh::show(
+  vtkPolyData* coarse, Index steps, vtkPolyData* output, ArrayMemory& memory, PassMonitor& monitor)
 {
   if (steps != this->cursor_.steps())
   {
     this->shown_ = nullptr;
-    this->cursor_.moveTo(steps);
-  }
-  if (this->atLevelOne())
-  {
-    if (!this->original_)
+    // About half of what is left, whether the record was opened just now or not.
+    if (!this->cursor_.moveTo(steps, &monitor.part(0.5 + 0.5 * monitor.reached())))
     {
-      this->original_ = this->original(coarse);
+      return false;
     }
-    output->ShallowCopy(this->original_);
-    return;
   }
-  if (!this->shown_)
+  vtkSmartPointer<vtkPolyData>& mesh = this->atLevelOne() ? this->original_ : this->shown_;
+  Monitor& rest = monitor.part(1.0);
+  if (!mesh)
   {
-    this->shown_ = this->prefix(coarse, memory);
+    mesh = this->atLevelOne() ? this->original(coarse, rest) : this->prefix(coarse, memory, rest);
   }
-  output->ShallowCopy(this->shown_);
+  if (!mesh || !rest.update(1.0))
+  {
+    return false;
+  }
+  output->ShallowCopy(mesh);
+  return true;
 }
 
 ArrayPointer UndecimatedMesh::originalPointIds() const
@@ -112,8 +143,9 @@ ArrayPointer UndecimatedMesh::originalPointIds() const
   return numbers;
 }
 
-// A level below 1: prefixes of the arrays in record order.
-vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse, ArrayMemory& memory) const
+// A level below 1: prefixes of the arrays in record order. Null if it was cancelled.
+vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(
+  vtkPolyData* coarse, ArrayMemory& memory, Monitor& monitor) const
 {
   const RecordFields& record = this->record_;
   const Index base = record.view.baseNodeCount;
@@ -126,6 +158,11 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse, ArrayM
   mesh->SetPolys(makeTriangles(
     this->cursor_.cells(), this->cursor_.cellCount(), record.header[kWidePolys] != 0, &memory));
 
+  ArrayProgress progress(monitor, record);
+  if (!progress.arrayDone())
+  {
+    return nullptr;
+  }
   vtkPointData* pointData = coarse->GetPointData();
   std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
   for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
@@ -133,6 +170,10 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse, ArrayM
     const int place = record.pointArrays[i];
     arrays[place] =
       join(pointData->GetAbstractArray(place), base, record.pointData[i], back, &memory);
+    if (!progress.arrayDone())
+    {
+      return nullptr;
+    }
   }
   setArrays(mesh->GetPointData(), pointData, arrays);
 
@@ -146,13 +187,17 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(vtkPolyData* coarse, ArrayM
       ? gather(record.cellData[i], described, leading, this->cursor_.sources(),
           this->cursor_.cellCount(), &memory)
       : ArrayPointer(described);
+    if (!progress.arrayDone())
+    {
+      return nullptr;
+    }
   }
   setArrays(mesh->GetCellData(), cellData, arrays);
   return mesh;
 }
 
-// Level 1: the input of the decimation, in its own order.
-vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse) const
+// Level 1: the input of the decimation, in its own order. Null if it was cancelled.
+vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse, Monitor& monitor) const
 {
   const RecordFields& record = this->record_;
   const RecordView& view = record.view;
@@ -171,6 +216,11 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse) cons
   }
   mesh->SetPolys(makeTriangles(corners.data(), view.cellCount, record.header[kWidePolys] != 0));
 
+  ArrayProgress progress(monitor, record);
+  if (!progress.arrayDone())
+  {
+    return nullptr;
+  }
   vtkPointData* pointData = coarse->GetPointData();
   std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
   for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
@@ -178,6 +228,10 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse) cons
     const int place = record.pointArrays[i];
     arrays[place] = scatter(pointData->GetAbstractArray(place), view.baseNodeCount,
       record.pointData[i], view.stepCount, view.nodeOrder);
+    if (!progress.arrayDone())
+    {
+      return nullptr;
+    }
   }
   setArrays(mesh->GetPointData(), pointData, arrays);
 
@@ -188,12 +242,23 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse) cons
     vtkAbstractArray* described = cellData->GetAbstractArray(record.cellArrays[i]);
     arrays[record.cellArrays[i]] =
       record.cellData[i] ? share(record.cellData[i], described) : ArrayPointer(described);
+    if (!progress.arrayDone())
+    {
+      return nullptr;
+    }
   }
   setArrays(mesh->GetCellData(), cellData, arrays);
   return mesh;
 }
 
-UndecimatedMesh* UndecimatedMeshCache::find(vtkPolyData* input, std::string& problem)
+void UndecimatedMeshCache::startPass()
+{
+  ++this->pass_;
+  this->entries_.remove_if([](const Entry& entry) { return !entry.input; });
+}
+
+UndecimatedMesh* UndecimatedMeshCache::find(
+  vtkPolyData* input, PassMonitor& monitor, std::string& problem)
 {
   const auto found = std::find_if(this->entries_.begin(), this->entries_.end(),
     [input](const Entry& entry) { return entry.input == input; });
@@ -209,8 +274,8 @@ UndecimatedMesh* UndecimatedMeshCache::find(vtkPolyData* input, std::string& pro
   }
   this->forget();
   auto mesh = std::make_unique<UndecimatedMesh>();
-  problem = mesh->open(input);
-  if (!problem.empty())
+  problem = mesh->open(input, monitor);
+  if (!problem.empty() || monitor.cancelled())
   {
     return nullptr;
   }
@@ -220,7 +285,6 @@ UndecimatedMesh* UndecimatedMeshCache::find(vtkPolyData* input, std::string& pro
 
 void UndecimatedMeshCache::forget()
 {
-  this->entries_.remove_if([](const Entry& entry) { return !entry.input; });
   while (this->entries_.size() >= kMaximumIdle && this->entries_.back().pass + 1 < this->pass_)
   {
     this->entries_.pop_back();

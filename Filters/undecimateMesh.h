@@ -8,6 +8,7 @@
 #define undecimateMesh_h
 
 #include "undecimateMemory.h"
+#include "undecimatePass.h"
 #include "undecimateRecordFields.h"
 
 #include "undecimation.h"
@@ -39,8 +40,9 @@ class UndecimatedMesh
 {
 public:
   /// Decode the record in the field data of `coarse`.
+  /// @param monitor its next parts; if it cancels, the mesh must not be used
   /// @return what is wrong and what to do, or an empty string
-  std::string open(vtkPolyData* coarse);
+  std::string open(vtkPolyData* coarse, PassMonitor& monitor);
 
   /// The cursor; show() moves it.
   const Undecimation& cursor() const { return this->cursor_; }
@@ -50,15 +52,19 @@ public:
   /// @param coarse the mesh that was opened, unchanged
   /// @param steps removed nodes that are back, 0 to cursor().stepCount()
   /// @param memory of the arrays
-  void show(vtkPolyData* coarse, Index steps, vtkPolyData* output, ArrayMemory& memory);
+  /// @param monitor its next parts, to the end
+  /// @return false if it was cancelled: nothing was put into `output`, and any level may be next
+  bool show(vtkPolyData* coarse, Index steps, vtkPolyData* output, ArrayMemory& memory,
+    PassMonitor& monitor);
 
   /// Original number of each point of the level shown last: array kOriginalPointIds.
   ArrayPointer originalPointIds() const;
 
 private:
   bool atLevelOne() const { return this->cursor_.steps() == this->cursor_.stepCount(); }
-  vtkSmartPointer<vtkPolyData> prefix(vtkPolyData* coarse, ArrayMemory& memory) const;
-  vtkSmartPointer<vtkPolyData> original(vtkPolyData* coarse) const;
+  vtkSmartPointer<vtkPolyData> prefix(
+    vtkPolyData* coarse, ArrayMemory& memory, Monitor& monitor) const;
+  vtkSmartPointer<vtkPolyData> original(vtkPolyData* coarse, Monitor& monitor) const;
 
   RecordFields record_;
   Undecimation cursor_;
@@ -71,19 +77,20 @@ private:
 /// The key is the input object itself and its modification time, so that neither an older object in
 /// the place of a newer one nor the blocks of a composite get each other's levels. Meshes that are
 /// used neither in this pass of the pipeline nor in the one before are forgotten, the least
-/// recently used first, when there are more than kMaximumIdle meshes; those of deleted inputs at
-/// once.
+/// recently used first, when there are more than kMaximumIdle meshes; those of deleted inputs when
+/// the next pass starts.
 class UndecimatedMeshCache
 {
 public:
   static constexpr std::size_t kMaximumIdle = 8;
 
   /// The filter starts a pass (over one input, or over all blocks of a composite).
-  void startPass() { ++this->pass_; }
+  void startPass();
 
   /// The decoded mesh of an input; opened if need be.
-  /// @param[out] problem why the result is null
-  UndecimatedMesh* find(vtkPolyData* input, std::string& problem);
+  /// @param monitor its next parts, if the mesh is opened
+  /// @param[out] problem why the result is null; empty if it was cancelled
+  UndecimatedMesh* find(vtkPolyData* input, PassMonitor& monitor, std::string& problem);
 
   /// Meshes in the cache.
   std::size_t size() const { return this->entries_.size(); }

@@ -2,45 +2,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file undecimatePass.h
-/// @brief Where an execution of a filter starts, over one input or all blocks of a composite.
+/// @brief One execution of a filter, over one input or all blocks of a composite: where it starts,
+/// its progress, and whether it was aborted.
 
 #ifndef undecimatePass_h
 #define undecimatePass_h
 
+#include "undecimateCompatibility.h"
+
+#include "monitor.h"
+
 #include "vtkAlgorithm.h"
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkNew.h"
+
+#include <utility>
 
 namespace undecimate
 {
 namespace filters
 {
 
-/// Tells the first request of an execution from those of a composite's blocks.
+/// Tells the first request of an execution from those of a composite's blocks, and keeps an abort
+/// until the last block.
 ///
-/// The executive wraps each execution, and within that of a composite the one of each block,
-/// between the request REQUEST_DATA_NOT_GENERATED and the event EndEvent: this counts the open
-/// brackets.
+/// The executive asks a filter for the data of a composite, and within that for those of each
+/// block. It computes the pipeline's modification time once, at the beginning of each update, and
+/// not for the blocks: so a mesh that is asked for after a composite is one of its blocks unless an
+/// update has begun in between.
 class PipelinePass
 {
 public:
-  /// Hear the algorithm's EndEvent. Once, in its constructor.
-  void watch(vtkAlgorithm* algorithm)
+  explicit PipelinePass(vtkAlgorithm* algorithm)
+    : algorithm_(algorithm)
   {
-    vtkNew<vtkCallbackCommand> command;
-    command->SetClientData(this);
-    command->SetCallback(
-      [](vtkObject*, unsigned long, void* self, void*)
-      {
-        PipelinePass* pass = static_cast<PipelinePass*>(self);
-        pass->depth_ -= pass->depth_ > 0;
-      });
-    algorithm->AddObserver(vtkCommand::EndEvent, command);
+  }
+
+  /// For ComputePipelineMTime(). To the executive, what an aborted execution left is up to date: so
+  /// the filter counts as modified then, and the update that begins executes it again.
+  void beginUpdate()
+  {
+    this->inBlocks_ = false;
+    if (std::exchange(this->aborted_, false))
+    {
+      this->algorithm_->Modified();
+    }
   }
 
   /// For ProcessRequest(): whether the request starts an execution.
@@ -52,15 +60,66 @@ public:
       return false;
     }
     // A composite is never a block of another.
-    if (vtkCompositeDataSet::GetData(inputs))
+    const bool composite = vtkCompositeDataSet::GetData(inputs) != nullptr;
+    if (this->inBlocks_ && !composite)
     {
-      this->depth_ = 0;
+      return false;
     }
-    return this->depth_++ == 0;
+    this->inBlocks_ = composite;
+    this->aborted_ = false;
+    return true;
   }
 
+  /// Whether this execution was aborted. VTK 9.1 forgets an abort at the next block.
+  bool aborted()
+  {
+    this->aborted_ = this->aborted_ || checkAbort(this->algorithm_, 0);
+    return this->aborted_;
+  }
+
+  vtkAlgorithm* algorithm() const { return this->algorithm_; }
+
 private:
-  int depth_ = 0;
+  vtkAlgorithm* algorithm_;
+  bool inBlocks_ = false;
+  bool aborted_ = false;
+};
+
+/// Passes progress from the core to an algorithm, and its abort to the core, for one part of the
+/// work after the other.
+class PassMonitor
+{
+public:
+  explicit PassMonitor(PipelinePass& pass)
+    : monitor_(
+        [this, &pass](double fraction)
+        {
+          pass.algorithm()->UpdateProgress(this->begin_ + (this->end_ - this->begin_) * fraction);
+          return !pass.aborted();
+        })
+  {
+  }
+  PassMonitor(const PassMonitor&) = delete;
+  PassMonitor& operator=(const PassMonitor&) = delete;
+
+  /// The monitor of the next part, from where the last one ended to the fraction `end` of the
+  /// whole.
+  Monitor& part(double end)
+  {
+    this->begin_ = this->end_;
+    this->end_ = end;
+    return this->monitor_;
+  }
+
+  /// Where the last part ended.
+  double reached() const { return this->end_; }
+
+  bool cancelled() const { return this->monitor_.cancelled(); }
+
+private:
+  double begin_ = 0.0;
+  double end_ = 0.0;
+  Monitor monitor_;
 };
 
 } // namespace filters

@@ -24,6 +24,7 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <optional>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -132,6 +133,36 @@ void writeNodalValues(const Record& record, vtkPolyData* mesh, vtkFieldData* fie
     vtkAbstractArray* array = data->GetAbstractArray(i);
     write(fields, indexed("PointData.", i), gather(array, array, 0, numbers, removed));
   }
+}
+
+// The checksum of a record; none if it was cancelled.
+std::optional<std::int64_t> checksum(
+  const std::int64_t* header, vtkFieldData* fields, const MonitorShare& progress)
+{
+  Fingerprint print;
+  print.add(header, kChecksum * sizeof(header[0]));
+  std::set<std::string> names;
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    const char* name = fields->GetAbstractArray(i)->GetName();
+    if (isRecordArray(name) && fields->GetAbstractArray(i)->GetNumberOfValues() > 0)
+    {
+      names.insert(name);
+    }
+  }
+  names.erase(kPrefix + "Header");
+  double done = 0.0;
+  for (const std::string& name : names)
+  {
+    print.add(name);
+    print.add(signedBits(fingerprint(fields->GetAbstractArray(name.c_str()))));
+    done += 1.0;
+    if (!progress.update(done / static_cast<double>(names.size())))
+    {
+      return std::nullopt;
+    }
+  }
+  return signedBits(print.value());
 }
 
 // ---- reading ----
@@ -246,7 +277,7 @@ private:
   std::string problem_;
 };
 
-std::string readHeader(vtkPolyData* mesh, std::int64_t* header)
+std::string readHeader(vtkPolyData* mesh, std::int64_t* header, const MonitorShare& progress)
 {
   vtkFieldData* fields = mesh->GetFieldData();
   vtkAbstractArray* found = fields->GetAbstractArray((kPrefix + "Header").c_str());
@@ -275,7 +306,12 @@ std::string readHeader(vtkPolyData* mesh, std::int64_t* header)
       std::to_string(found->GetNumberOfValues()) + " values");
   }
   std::copy_n(values, static_cast<int>(kHeaderSize), header);
-  if (recordChecksum(header, fields) != header[kChecksum])
+  const std::optional<std::int64_t> sum = checksum(header, fields, progress);
+  if (!sum)
+  {
+    return {};
+  }
+  if (*sum != header[kChecksum])
   {
     return damaged("the checksum of its arrays is wrong");
   }
@@ -349,7 +385,8 @@ private:
   std::string text_;
 };
 
-std::string compareArrays(vtkPolyData* mesh, FieldReader& reader, RecordFields& record)
+std::string compareArrays(
+  vtkPolyData* mesh, FieldReader& reader, RecordFields& record, const MonitorShare& progress)
 {
   const std::int64_t pointArrays = record.header[kPointArrayCount];
   const std::int64_t count = pointArrays + record.header[kCellArrayCount];
@@ -372,6 +409,10 @@ std::string compareArrays(vtkPolyData* mesh, FieldReader& reader, RecordFields& 
     else
     {
       cells.expect(bare, prints[i], record.cellArrays);
+    }
+    if (!progress.update(static_cast<double>(i + 1) / static_cast<double>(count)))
+    {
+      return {};
     }
   }
   const std::string first =
@@ -401,7 +442,8 @@ std::string compareCells(vtkPolyData* mesh, const std::int64_t* header)
 }
 
 // What was done to the mesh since the record was written; empty if nothing.
-std::string compareMesh(vtkPolyData* mesh, FieldReader& reader, RecordFields& record)
+std::string compareMesh(
+  vtkPolyData* mesh, FieldReader& reader, RecordFields& record, const MonitorShare& progress)
 {
   const std::int64_t* header = record.header;
   if (mesh->GetNumberOfPoints() != header[kBaseNodeCount])
@@ -410,7 +452,7 @@ std::string compareMesh(vtkPolyData* mesh, FieldReader& reader, RecordFields& re
       std::to_string(header[kBaseNodeCount]);
   }
   std::string text = compareCells(mesh, header);
-  const std::string arrays = compareArrays(mesh, reader, record);
+  const std::string arrays = compareArrays(mesh, reader, record, progress);
   text += (text.empty() || arrays.empty() ? "" : "; ") + arrays;
   if (!pointsOf(mesh) || signedBits(fingerprint(pointsOf(mesh))) != header[kPointsFingerprint])
   {
@@ -490,24 +532,7 @@ void passFieldData(vtkFieldData* from, vtkFieldData* to)
 
 std::int64_t recordChecksum(const std::int64_t* header, vtkFieldData* fields)
 {
-  Fingerprint print;
-  print.add(header, kChecksum * sizeof(header[0]));
-  std::set<std::string> names;
-  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
-  {
-    const char* name = fields->GetAbstractArray(i)->GetName();
-    if (isRecordArray(name) && fields->GetAbstractArray(i)->GetNumberOfValues() > 0)
-    {
-      names.insert(name);
-    }
-  }
-  names.erase(kPrefix + "Header");
-  for (const std::string& name : names)
-  {
-    print.add(name);
-    print.add(signedBits(fingerprint(fields->GetAbstractArray(name.c_str()))));
-  }
-  return signedBits(print.value());
+  return *checksum(header, fields, MonitorShare(nullptr));
 }
 
 void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse,
@@ -560,14 +585,20 @@ void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyDa
   write<vtkTypeInt64Array>(fields, "Header", header);
 }
 
-std::string readRecord(vtkPolyData* mesh, RecordFields& record)
+std::string readRecord(vtkPolyData* mesh, RecordFields& record, Monitor& monitor)
 {
-  if (std::string problem = readHeader(mesh, record.header); !problem.empty())
+  const MonitorShare progress(&monitor);
+  if (std::string problem = readHeader(mesh, record.header, progress.part(0.0, 0.7));
+      !problem.empty() || monitor.cancelled())
   {
     return problem;
   }
   FieldReader reader(mesh->GetFieldData(), record);
-  const std::string changes = compareMesh(mesh, reader, record);
+  const std::string changes = compareMesh(mesh, reader, record, progress.part(0.7, 1.0));
+  if (monitor.cancelled())
+  {
+    return {};
+  }
   if (!changes.empty())
   {
     return "The mesh was changed after the decimation: " + changes +

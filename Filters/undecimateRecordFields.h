@@ -34,6 +34,7 @@
 
 #include "undecimateArrays.h"
 
+#include "monitor.h"
 #include "record.h"
 
 #include <string>
@@ -116,9 +117,11 @@ struct RecordFields
 
 /// Find the record in a mesh's field data, and check that it is whole and belongs to the mesh as it
 /// is. What the record itself says is checked by Undecimation::open().
+/// @param[out] fields complete if nothing is wrong and `monitor` did not cancel
+/// @param monitor progress and cancel; asked after each array
 /// @return what is wrong and what to do, or an empty string
 /// Complexity: O(mesh + record).
-std::string readRecord(vtkPolyData* mesh, RecordFields& fields);
+std::string readRecord(vtkPolyData* mesh, RecordFields& fields, Monitor& monitor);
 
 } // namespace filters
 } // namespace undecimate

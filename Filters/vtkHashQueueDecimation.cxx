@@ -4,17 +4,16 @@
 #include "vtkHashQueueDecimation.h"
 
 #include "undecimateArrays.h"
-#include "undecimateCompatibility.h"
 #include "undecimateInput.h"
 #include "undecimatePass.h"
 #include "undecimateRecordFields.h"
 
 #include "hash_queue_decimation.h"
-#include "monitor.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -30,6 +29,7 @@
 #include <exception>
 #include <limits>
 #include <new>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -43,6 +43,31 @@ namespace
 {
 
 constexpr double kCoreShare = 0.95; // of the progress; the rest is for the output
+
+// A MaximumError that is no limit: a fraction of 1, which is less awkward to show than infinity.
+constexpr double kNoErrorLimit = 1.0;
+
+// The enumerations of the filter are those of the core.
+template <class Filter, class Core>
+constexpr bool same(Filter a, Core b)
+{
+  return static_cast<int>(a) == static_cast<int>(b);
+}
+static_assert(same(vtkHashQueueDecimation::DEVIATION, Criterion::Deviation) &&
+    same(vtkHashQueueDecimation::SCALAR_DIFFERENCE, Criterion::ScalarDifference) &&
+    same(vtkHashQueueDecimation::ANGLE_TO_XY_PLANE, Criterion::AngleToXYPlane) &&
+    same(vtkHashQueueDecimation::LOGARITHMIC, IntervalSpacing::Logarithmic) &&
+    same(vtkHashQueueDecimation::EXPONENTIAL, IntervalSpacing::Exponential),
+  "");
+
+// What is said about an input.
+enum class Notice
+{
+  ArrayGivesWay,
+  PassedAlong,
+  Triangulated,
+  LeftOut
+};
 
 // Thrown for a request that cannot be met; the text is the error message.
 struct BrokenRequest
@@ -152,11 +177,32 @@ std::string describeKept(const HashQueueDecimationResult& result)
 
 struct vtkHashQueueDecimation::Internals
 {
+  explicit Internals(vtkHashQueueDecimation* self)
+    : pass(self)
+  {
+  }
+
   PipelinePass pass;
   std::vector<std::string> scalars;
   std::vector<std::string> reasons; // one of each kind
   std::string stopReason;
-  bool saidTriangulated = false;
+  std::set<Notice> said;
+  vtkMTimeType upstreamTime = 0; // at which they were said
+
+  // Whether something is to be said about the input. Upstream of a time step that is not the first
+  // nothing was changed.
+  bool isNew(Notice notice)
+  {
+    auto* upstream =
+      vtkDemandDrivenPipeline::SafeDownCast(this->pass.algorithm()->GetInputExecutive(0, 0));
+    const vtkMTimeType time = upstream ? upstream->GetPipelineMTime() : 0;
+    if (time != this->upstreamTime)
+    {
+      this->said.clear();
+      this->upstreamTime = time;
+    }
+    return this->said.insert(notice).second;
+  }
 
   void addReason(const std::string& reason)
   {
@@ -169,9 +215,18 @@ struct vtkHashQueueDecimation::Internals
 };
 
 vtkHashQueueDecimation::vtkHashQueueDecimation()
-  : Private(std::make_unique<Internals>())
+  : Private(std::make_unique<Internals>(this))
 {
-  this->Private->pass.watch(this);
+  const HashQueueDecimationOptions defaults;
+  this->TargetReduction = defaults.targetReduction;
+  this->TargetNodes = defaults.targetNodes;
+  this->TargetTriangles = defaults.targetTriangles;
+  this->MaximumError = std::min(defaults.maximumError, kNoErrorLimit);
+  this->Criterion = static_cast<int>(defaults.criterion);
+  this->ScalarWeight = defaults.scalarWeight;
+  this->IntervalSpacing = static_cast<int>(defaults.intervalSpacing);
+  this->IntervalNodes = defaults.intervalNodes;
+  this->PreserveBoundary = defaults.preserveBoundary;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -212,20 +267,54 @@ const char* vtkHashQueueDecimation::GetStopReason()
   return this->Private->stopReason.c_str();
 }
 
+void vtkHashQueueDecimation::SetTriangulate(vtkTypeBool on)
+{
+  if (this->Triangulate != on)
+  {
+    this->Triangulate = on;
+    this->Private->said.clear();
+    this->Modified();
+  }
+}
+
+void vtkHashQueueDecimation::SetOriginalPointIds(vtkTypeBool on)
+{
+  if (this->OriginalPointIds != on)
+  {
+    this->OriginalPointIds = on;
+    this->Private->said.clear();
+    this->Modified();
+  }
+}
+
+int vtkHashQueueDecimation::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
+  vtkMTimeType* mtime)
+{
+  this->Private->pass.beginUpdate();
+  return this->Superclass::ComputePipelineMTime(
+    request, inputVector, outputVector, requestFromOutputPort, mtime);
+}
+
 int vtkHashQueueDecimation::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   if (this->Private->pass.starts(request, inputVector[0]))
   {
-    this->NumberOfInputNodes = 0;
-    this->NumberOfInputTriangles = 0;
-    this->NumberOfNodes = 0;
-    this->NumberOfTriangles = 0;
-    this->Error = 0.0;
-    this->Private->reasons.clear();
-    this->Private->stopReason.clear();
+    this->ClearResults();
   }
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+void vtkHashQueueDecimation::ClearResults()
+{
+  this->NumberOfInputNodes = 0;
+  this->NumberOfInputTriangles = 0;
+  this->NumberOfNodes = 0;
+  this->NumberOfTriangles = 0;
+  this->Error = 0.0;
+  this->Private->reasons.clear();
+  this->Private->stopReason.clear();
 }
 
 int vtkHashQueueDecimation::RequestData(
@@ -254,7 +343,11 @@ int vtkHashQueueDecimation::RequestData(
       }
       return 1;
     }
-    vtkSmartPointer<vtkPolyData> mesh = this->PrepareMesh(input);
+    vtkSmartPointer<vtkPolyData> mesh;
+    if (!this->Private->pass.aborted())
+    {
+      mesh = this->PrepareMesh(input);
+    }
     HashQueueDecimationResult result;
     if (mesh && this->Decimate(mesh, pieces, result))
     {
@@ -263,6 +356,7 @@ int vtkHashQueueDecimation::RequestData(
       writeRecord(result, mesh, output, this->OriginalPointIds != 0);
       return 1;
     }
+    this->ClearResults();
     output->Initialize();
     bare->Initialize();
     return 1;
@@ -298,12 +392,16 @@ vtkSmartPointer<vtkPolyData> vtkHashQueueDecimation::PrepareMesh(vtkPolyData* in
   }
   if (this->OriginalPointIds && mesh->GetPointData()->HasArray(kOriginalPointIds))
   {
-    vtkWarningMacro("The input's point array '"
-      << kOriginalPointIds
-      << "' gives way to the one that OriginalPointIds adds. Rename it to keep it.");
+    if (this->Private->isNew(Notice::ArrayGivesWay))
+    {
+      vtkWarningMacro("The input's point array '"
+        << kOriginalPointIds
+        << "' gives way to the one that OriginalPointIds adds. Rename it to keep it.");
+    }
     mesh->GetPointData()->RemoveArray(kOriginalPointIds);
   }
-  if (mesh->GetNumberOfVerts() > 0 || mesh->GetNumberOfLines() > 0)
+  if ((mesh->GetNumberOfVerts() > 0 || mesh->GetNumberOfLines() > 0) &&
+    this->Private->isNew(Notice::PassedAlong))
   {
     vtkWarningMacro(<< mesh->GetNumberOfVerts() << " vertex cells and " << mesh->GetNumberOfLines()
                     << " lines are passed along unchanged; their nodes are kept at all levels.");
@@ -322,15 +420,14 @@ vtkSmartPointer<vtkPolyData> vtkHashQueueDecimation::PrepareMesh(vtkPolyData* in
   require(checkFaces(mesh));
   vtkIdType dropped = 0;
   mesh = triangulated(
-    mesh, [this] { return checkAbort(this, 0); }, dropped);
-  if (mesh && !this->Private->saidTriangulated)
+    mesh, [this] { return this->Private->pass.aborted(); }, dropped);
+  if (mesh && this->Private->isNew(Notice::Triangulated))
   {
-    this->Private->saidTriangulated = true;
     vtkWarningMacro(<< others.describe()
                     << " of the input were cut into triangles, as Triangulate asks: level 1 of the "
                        "undecimation is the triangulated mesh.");
   }
-  if (mesh && dropped > 0)
+  if (mesh && dropped > 0 && this->Private->isNew(Notice::LeftOut))
   {
     vtkWarningMacro(<< dropped << " faces of the input gave no triangle and were left out.");
   }
@@ -363,9 +460,9 @@ bool vtkHashQueueDecimation::Decimate(
   options.targetReduction = this->TargetReduction;
   options.targetNodes = this->TargetNodes;
   options.targetTriangles = this->TargetTriangles;
-  // The default 1 is no limit for any criterion; for fractions, nor is what is more.
-  const bool noLimit =
-    this->Criterion == ANGLE_TO_XY_PLANE ? this->MaximumError == 1.0 : this->MaximumError >= 1.0;
+  // The default is no limit for any criterion; for fractions, nor is what is more.
+  const bool noLimit = this->Criterion == ANGLE_TO_XY_PLANE ? this->MaximumError == kNoErrorLimit
+                                                            : this->MaximumError >= kNoErrorLimit;
   options.maximumError = noLimit ? std::numeric_limits<double>::infinity() : this->MaximumError;
   options.intervalSpacing = static_cast<undecimate::IntervalSpacing>(this->IntervalSpacing);
   options.intervalNodes = this->IntervalNodes;
@@ -374,13 +471,8 @@ bool vtkHashQueueDecimation::Decimate(
   options.scalarWeight = this->ScalarWeight;
   options.trackCellSources = mesh->GetCellData()->GetNumberOfArrays() > 0;
 
-  Monitor monitor(
-    [this](double fraction)
-    {
-      this->UpdateProgress(kCoreShare * fraction);
-      return !checkAbort(this, 0);
-    });
-  const Outcome outcome = decimate(view.view(), options, monitor, result);
+  PassMonitor monitor(this->Private->pass);
+  const Outcome outcome = decimate(view.view(), options, monitor.part(kCoreShare), result);
   if (outcome.status == Status::Cancelled)
   {
     return false;

@@ -45,9 +45,16 @@
  * @section Execution Model
  * Each execution decimates anew; nothing is kept between executions but the results that the
  * getters tell. A composite input is decimated block by block, and the getters then tell sums over
- * the blocks, the largest error and all reasons. An aborted execution gives empty output. When the
- * input comes in several pieces, the boundary nodes of each are kept, so that the pieces fit
- * together.
+ * the blocks, the largest error and all reasons. When the input comes in several pieces, the
+ * boundary nodes of each are kept, so that the pieces fit together.
+ *
+ * An aborted execution gives empty output (of a composite with VTK 9.1 and 9.2: at the blocks that
+ * were not done), and the next update executes again; before that, VTK 9.3 and later want
+ * AbortExecuteOff().
+ *
+ * What a warning tells about the input (cells that are passed along, cut or left out) is said once,
+ * and again when something upstream, OriginalPointIds or Triangulate was changed; not at each time
+ * step.
  *
  * @warning
  * A piece has at most 2^31 - 1 points and triangle corners.
@@ -210,7 +217,7 @@ public:
    * Cut quads, polygons and triangle strips of the input into triangles, which inherit their cell
    * data. Level 1 is then the triangulated input. Default is off: such cells are an error.
    */
-  vtkSetMacro(Triangulate, vtkTypeBool);
+  virtual void SetTriangulate(vtkTypeBool on);
   vtkGetMacro(Triangulate, vtkTypeBool);
   vtkBooleanMacro(Triangulate, vtkTypeBool);
   ///@}
@@ -219,7 +226,7 @@ public:
   /**
    * Add the point array `vtkOriginalPointIds` to the output. Default is off.
    */
-  vtkSetMacro(OriginalPointIds, vtkTypeBool);
+  virtual void SetOriginalPointIds(vtkTypeBool on);
   vtkGetMacro(OriginalPointIds, vtkTypeBool);
   vtkBooleanMacro(OriginalPointIds, vtkTypeBool);
   ///@}
@@ -238,6 +245,8 @@ public:
   const char* GetStopReason();
   ///@}
 
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector, int requestFromOutputPort, vtkMTimeType* mtime) override;
   int ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -248,15 +257,16 @@ protected:
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
-  double TargetReduction = 0.9;
-  vtkIdType TargetNodes = 0;
-  vtkIdType TargetTriangles = 0;
-  double MaximumError = 1.0;
-  int Criterion = DEVIATION;
-  double ScalarWeight = 0.1;
-  int IntervalSpacing = LOGARITHMIC;
-  double IntervalNodes = 4.0;
-  vtkTypeBool PreserveBoundary = 0;
+  // The constructor gives these the defaults of the core's options.
+  double TargetReduction;
+  vtkIdType TargetNodes;
+  vtkIdType TargetTriangles;
+  double MaximumError;
+  int Criterion;
+  double ScalarWeight;
+  int IntervalSpacing;
+  double IntervalNodes;
+  vtkTypeBool PreserveBoundary;
   vtkTypeBool Triangulate = 0;
   vtkTypeBool OriginalPointIds = 0;
 
@@ -270,6 +280,7 @@ private:
   vtkHashQueueDecimation(const vtkHashQueueDecimation&) = delete;
   void operator=(const vtkHashQueueDecimation&) = delete;
 
+  void ClearResults();
   vtkSmartPointer<vtkPolyData> PrepareMesh(vtkPolyData* input);
   bool Decimate(vtkPolyData* mesh, bool pieces, undecimate::HashQueueDecimationResult& result);
   void FillOutput(

@@ -26,18 +26,31 @@ vtkStandardNewMacro(vtkUndecimation);
 
 struct vtkUndecimation::Internals
 {
+  explicit Internals(vtkUndecimation* self)
+    : pass(self)
+  {
+  }
+
   PipelinePass pass;
   ArrayMemory memory;
   UndecimatedMeshCache meshes;
 };
 
 vtkUndecimation::vtkUndecimation()
-  : Private(std::make_unique<Internals>())
+  : Private(std::make_unique<Internals>(this))
 {
-  this->Private->pass.watch(this);
 }
 
 vtkUndecimation::~vtkUndecimation() = default;
+
+int vtkUndecimation::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
+  vtkMTimeType* mtime)
+{
+  this->Private->pass.beginUpdate();
+  return this->Superclass::ComputePipelineMTime(
+    request, inputVector, outputVector, requestFromOutputPort, mtime);
+}
 
 int vtkUndecimation::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
@@ -46,9 +59,7 @@ int vtkUndecimation::ProcessRequest(
   {
     this->Private->memory.startPass();
     this->Private->meshes.startPass();
-    this->NumberOfNodes = 0;
-    this->NumberOfTriangles = 0;
-    this->Error = 0.0;
+    this->ClearResults();
   }
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
@@ -58,6 +69,7 @@ int vtkUndecimation::RequestData(
 {
   vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  PipelinePass& pass = this->Private->pass;
   std::string problem;
   try
   {
@@ -68,23 +80,27 @@ int vtkUndecimation::RequestData(
       passFieldData(input->GetFieldData(), output->GetFieldData());
       return 1;
     }
-    if (UndecimatedMesh* mesh = this->Private->meshes.find(input, problem))
+    PassMonitor monitor(pass);
+    UndecimatedMesh* mesh =
+      pass.aborted() ? nullptr : this->Private->meshes.find(input, monitor, problem);
+    if (mesh)
     {
       const Undecimation& cursor = mesh->cursor();
-      mesh->show(input,
-        this->LevelBy == BY_NODES ? cursor.stepsForLevel(this->Level)
-                                  : cursor.stepsForError(this->MaximumError),
-        output, this->Private->memory);
-      output->GetFieldData()->Initialize();
-      passFieldData(input->GetFieldData(), output->GetFieldData());
-      if (this->OriginalPointIds)
+      const Index steps = this->LevelBy == BY_NODES ? cursor.stepsForLevel(this->Level)
+                                                    : cursor.stepsForError(this->MaximumError);
+      if (mesh->show(input, steps, output, this->Private->memory, monitor))
       {
-        output->GetPointData()->AddArray(mesh->originalPointIds());
+        output->GetFieldData()->Initialize();
+        passFieldData(input->GetFieldData(), output->GetFieldData());
+        if (this->OriginalPointIds)
+        {
+          output->GetPointData()->AddArray(mesh->originalPointIds());
+        }
+        this->NumberOfNodes += cursor.nodeCount();
+        this->NumberOfTriangles += cursor.cellCount();
+        this->Error = std::max(this->Error, cursor.error());
+        return 1;
       }
-      this->NumberOfNodes += cursor.nodeCount();
-      this->NumberOfTriangles += cursor.cellCount();
-      this->Error = std::max(this->Error, cursor.error());
-      return 1;
     }
   }
   catch (const std::bad_alloc&)
@@ -96,9 +112,21 @@ int vtkUndecimation::RequestData(
   {
     problem = std::string("The undecimation failed: ") + failure.what();
   }
-  vtkErrorMacro(<< problem);
   output->Initialize();
+  if (problem.empty()) // aborted
+  {
+    this->ClearResults();
+    return 1;
+  }
+  vtkErrorMacro(<< problem);
   return 0;
+}
+
+void vtkUndecimation::ClearResults()
+{
+  this->NumberOfNodes = 0;
+  this->NumberOfTriangles = 0;
+  this->Error = 0.0;
 }
 
 void vtkUndecimation::PrintSelf(ostream& os, vtkIndent indent)

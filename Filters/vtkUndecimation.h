@@ -35,6 +35,11 @@
  * same, the output's arrays stay the same objects. With a composite input the getters tell sums
  * over the blocks and the largest error.
  *
+ * Progress is reported, and an abort is heard, while a record is decoded, while the level changes
+ * and after each array. An aborted execution gives empty output (of a composite with VTK 9.1 and
+ * 9.2: at the blocks that were not done), and the next update executes again; before that, VTK 9.3
+ * and later want AbortExecuteOff().
+ *
  * @warning
  * An input whose points, cells or arrays were changed since the decimation is refused, and the
  * error message says what was changed. Field data may be added freely.
@@ -119,6 +124,8 @@ public:
   vtkGetMacro(Error, double);
   ///@}
 
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector, int requestFromOutputPort, vtkMTimeType* mtime) override;
   int ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -141,6 +148,8 @@ protected:
 private:
   vtkUndecimation(const vtkUndecimation&) = delete;
   void operator=(const vtkUndecimation&) = delete;
+
+  void ClearResults();
 
   struct Internals;
   std::unique_ptr<Internals> Private;
