@@ -10,7 +10,7 @@
 set -euo pipefail
 
 # Qt is for the icons only, libqt5svg5 is what draws them (and ParaView's own).
-build="g++ cmake ninja-build paraview-dev python3-paraview libopenmpi-dev libeigen3-dev libxxhash-dev
+build="g++ cmake ninja-build paraview-dev python3-paraview libopenmpi-dev libxxhash-dev
   qtbase5-dev libqt5svg5"
 demo="$build xvfb xauth python3-numpy"
 # python3-pil reads the screenshots; the last line checks sources.
