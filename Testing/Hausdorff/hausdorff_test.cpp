@@ -71,6 +71,7 @@ constexpr Case kCases[] = {
   // them as long as there are few: measured 1.58, 1.69, 1.21 and 1.37 of what is claimed.
   { "plate_hole",   false, 2e-3, 1.1,  { 1e-6,   1e-6,   1e-6,   1e-6 } },
   { "flange",       false, 2e-3, 1.1,  { 1e-6,   1e-6,   8.1e-4, 2.4e-3 } },
+  { "scan",         false, 5e-4, 1.45, { 1.65e-3, 2.7e-3, 6.3e-3, 1.08e-2 } },
   { "blade_tip",    false, 5e-4, 1.75, { 2.3e-4, 4.4e-4, 1.1e-3, 1.7e-3 } },
   { "grid",         false, 5e-4, 1.9,  { 6.8e-4, 1.8e-3, 2.8e-3, 4.4e-3 } },
   { "anchor_dense", true,  1e-3, 1.35, { 1e-6,   4.9e-4, 1.7e-3, 4.1e-3 } },
