@@ -319,7 +319,15 @@ void addVariants(Fingerprint& print, vtkAbstractArray* array)
   {
     const vtkVariant value = array->GetVariantValue(i);
     print.add(std::string(value.GetTypeAsString()));
-    print.add(std::string(value.ToString()));
+    if (value.IsFloat() || value.IsDouble())
+    {
+      const double number = value.ToDouble(); // as text it would lose digits
+      print.add(&number, sizeof(number));
+    }
+    else
+    {
+      print.add(std::string(value.ToString()));
+    }
   }
 }
 

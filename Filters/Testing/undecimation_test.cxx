@@ -20,6 +20,8 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkTrivialProducer.h"
+#include "vtkVariant.h"
+#include "vtkVariantArray.h"
 
 #include <gtest/gtest.h>
 
@@ -613,6 +615,31 @@ TEST(Undecimation, NamesWhatWasChangedInTheMesh)
       EXPECT_NE(error.find(text), std::string::npos) << error << "\nlacks " << text;
     }
   }
+}
+
+TEST(Undecimation, KeepsVariantsAndNoticesTheirSmallestChange)
+{
+  vtkSmartPointer<vtkPolyData> mesh = makeGrid();
+  vtkNew<vtkVariantArray> variants;
+  variants->SetName("variants");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    variants->InsertNextValue(
+      i % 2 == 0 ? vtkVariant(1000.0 + static_cast<double>(i) / 7.0) : vtkVariant("text"));
+  }
+  mesh->GetPointData()->AddArray(variants);
+  vtkSmartPointer<vtkPolyData> coarse = decimated(mesh);
+  EXPECT_EQ(differences(undecimated(coarse, 1.0), mesh), "");
+  auto* left = vtkVariantArray::SafeDownCast(coarse->GetPointData()->GetAbstractArray("variants"));
+  ASSERT_NE(left, nullptr);
+  vtkIdType number = 0;
+  while (!left->GetValue(number).IsDouble())
+  {
+    ++number;
+  }
+  left->SetValue(number, vtkVariant(std::nextafter(left->GetValue(number).ToDouble(), 0.0)));
+  const std::string error = undecimationError(coarse);
+  EXPECT_NE(error.find("point array 'variants' changed"), std::string::npos) << error;
 }
 
 TEST(Undecimation, AcceptsArraysInAnotherOrderAndOtherActiveOnes)
