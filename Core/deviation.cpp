@@ -706,6 +706,8 @@ bool DeviationCriterion::Internals::chooseTriangulation(
       parts[left++] = { j, k };
     }
   }
+  // Parts before wholes: each triangle is an ear then.
+  std::reverse(filling.triangles.begin(), filling.triangles.begin() + filling.count);
   return true;
 }
 

@@ -11,7 +11,7 @@ namespace undecimate
 {
 
 EarCutting::EarCutting(const Vector* ring, int size, const Vector& normal)
-  : left_(size)
+  : size_(size)
 {
   // Project along the largest component of the normal, call it z, and see the plane from above.
   double Vector::*x = &Vector::x;
@@ -37,30 +37,31 @@ EarCutting::EarCutting(const Vector* ring, int size, const Vector& normal)
   {
     const double depth = ring[i].*z;
     this->points_[i] = { ring[i].*x - slopeX * depth, ring[i].*y - slopeY * depth };
-    this->previous_[i] = i == 0 ? size - 1 : i - 1;
-    this->next_[i] = i == size - 1 ? 0 : i + 1;
+    this->previous_[i] = static_cast<unsigned char>(i == 0 ? size - 1 : i - 1);
+    this->next_[i] = static_cast<unsigned char>(i == size - 1 ? 0 : i + 1);
   }
   const double square = 1.0 + slopeX * slopeX + slopeY * slopeY;
-  const double scale = 1.0 / std::sqrt(square);
-  this->xx_ = scale * (square - slopeX * slopeX);
-  this->xy_ = scale * -2.0 * slopeX * slopeY;
-  this->yy_ = scale * (square - slopeY * slopeY);
+  this->xx_ = square - slopeX * slopeX;
+  this->xy_ = -2.0 * slopeX * slopeY;
+  this->yy_ = square - slopeY * slopeY;
+  this->flat_ = kFlat / std::sqrt(square);
 }
 
 void EarCutting::findEars()
 {
-  std::array<double, kCapacity> heights;
-  for (int i = 0; i < this->left_; ++i)
+  for (int i = 0; i < this->size_; ++i)
   {
-    heights[i] = this->height(i);
-    if (!(heights[i] > 0.0))
-    {
-      this->reflex_[this->reflexCount_++] = i;
-    }
+    this->quality_[i] = this->height(this->previous_[i], i, this->next_[i]);
+    this->reflex_[this->reflexCount_] = static_cast<unsigned char>(i);
+    this->reflexCount_ += this->quality_[i] > 0.0 ? 0 : 1;
   }
-  for (int i = 0; i < this->left_; ++i)
+  for (int i = 0; i < this->size_; ++i)
   {
-    this->evaluate(i, heights[i]);
+    if (!(this->quality_[i] > this->flat_ &&
+          this->isEmpty(this->previous_[i], i, this->next_[i])))
+    {
+      this->quality_[i] = kNotAnEar;
+    }
   }
 }
 

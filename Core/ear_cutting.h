@@ -66,7 +66,7 @@ public:
     for (int i = 0; i < count; ++i)
     {
       const Point& a = this->points_[i];
-      const Point& b = this->points_[this->next_[i]];
+      const Point& b = this->points_[i + 1 == this->size_ ? 0 : i + 1];
       if (!(a.x * b.y - a.y * b.x > 0.0))
       {
         return false;
@@ -83,32 +83,40 @@ public:
   bool cut(MayConnect&& mayConnect, HoleTriangulation& filling)
   {
     filling.count = 0;
-    if (this->left_ > 3)
+    int left = this->size_;
+    int last = 0;
+    if (left > 3)
     {
       this->findEars();
     }
-    while (this->left_ > 3)
+    while (left > 3)
     {
       const int ear = this->bestEar();
       if (ear < 0)
       {
         return false;
       }
-      if (!mayConnect(this->previous_[ear], this->next_[ear]))
+      const int previous = this->previous_[ear];
+      const int next = this->next_[ear];
+      this->quality_[ear] = kNotAnEar;
+      if (!mayConnect(previous, next))
       {
-        this->quality_[ear] = kNotAnEar;
         continue;
       }
-      this->emit(ear, filling);
-      this->take(ear);
+      emit(previous, ear, next, filling);
+      this->next_[previous] = static_cast<unsigned char>(next);
+      this->previous_[next] = static_cast<unsigned char>(previous);
+      last = previous;
+      if (--left > 3)
+      {
+        this->evaluate(previous);
+        this->evaluate(next);
+      }
     }
-    const int last = this->anyLeft_;
-    if (!(this->height(last) > kFlat))
-    {
-      return false;
-    }
-    this->emit(last, filling);
-    return true;
+    const int previous = this->previous_[last];
+    const int next = this->next_[last];
+    emit(previous, last, next, filling);
+    return this->height(previous, last, next) > this->flat_;
   }
 
 private:
@@ -128,30 +136,38 @@ private:
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   }
 
-  // Height of the ear over its base, the edge that would be new, in units of the base; negative for
-  // a reflex corner. The larger, the shorter the new edge and the less the angle it cuts off.
-  double height(int i) const
+  static void emit(int previous, int ear, int next, HoleTriangulation& filling)
   {
-    const Point& a = this->points_[this->previous_[i]];
-    const Point& b = this->points_[i];
-    const Point& c = this->points_[this->next_[i]];
+    filling.triangles[filling.count++] = { static_cast<unsigned char>(previous),
+      static_cast<unsigned char>(ear), static_cast<unsigned char>(next) };
+  }
+
+  // Height of the ear i over its base, the edge that would be new, in units of the base and of the
+  // plane's slope (see flat_); negative for a reflex corner. The larger, the shorter the new edge
+  // and the less the angle it cuts off.
+  double height(int previous, int i, int next) const
+  {
+    const Point& a = this->points_[previous];
+    const Point& c = this->points_[next];
     const double x = c.x - a.x;
     const double y = c.y - a.y;
     const double base = (this->xx_ * x + this->xy_ * y) * x + this->yy_ * y * y;
-    return base > 0.0 ? orientation(a, b, c) / base : 0.0;
+    return base > 0.0 ? orientation(a, this->points_[i], c) / base : 0.0;
   }
 
-  void evaluate(int i, double height)
+  void evaluate(int i)
   {
-    this->quality_[i] = height > kFlat && this->isEmpty(i) ? height : kNotAnEar;
+    const int previous = this->previous_[i];
+    const int next = this->next_[i];
+    const double height = this->height(previous, i, next);
+    this->quality_[i] =
+      height > this->flat_ && this->isEmpty(previous, i, next) ? height : kNotAnEar;
   }
 
   // Whether no other corner lies in the triangle at corner i. If any does a reflex one does; a
   // corner that was cut lies outside what is left.
-  bool isEmpty(int i) const
+  bool isEmpty(int previous, int i, int next) const
   {
-    const int previous = this->previous_[i];
-    const int next = this->next_[i];
     const Point& a = this->points_[previous];
     const Point& b = this->points_[i];
     const Point& c = this->points_[next];
@@ -172,53 +188,29 @@ private:
   {
     int best = -1;
     double quality = 0.0;
-    int i = this->anyLeft_;
-    for (int k = 0; k < this->left_; ++k, i = this->next_[i])
+    for (int i = 0; i < this->size_; ++i)
     {
-      if (this->quality_[i] > quality)
-      {
-        quality = this->quality_[i];
-        best = i;
-      }
+      const bool better = this->quality_[i] > quality;
+      quality = better ? this->quality_[i] : quality;
+      best = better ? i : best;
     }
     return best;
-  }
-
-  void take(int ear)
-  {
-    const int previous = this->previous_[ear];
-    const int next = this->next_[ear];
-    this->next_[previous] = next;
-    this->previous_[next] = previous;
-    this->anyLeft_ = previous;
-    if (--this->left_ > 3)
-    {
-      this->evaluate(previous, this->height(previous));
-      this->evaluate(next, this->height(next));
-    }
-  }
-
-  void emit(int i, HoleTriangulation& filling) const
-  {
-    filling.triangles[filling.count++] = { static_cast<unsigned char>(this->previous_[i]),
-      static_cast<unsigned char>(i), static_cast<unsigned char>(this->next_[i]) };
   }
 
   void findEars();
 
   std::array<Point, kCapacity> points_;
   std::array<double, kCapacity> quality_;
-  std::array<int, kCapacity> previous_;
-  std::array<int, kCapacity> next_;
-  std::array<int, kCapacity> reflex_; // corners that are not convex at first: none becomes so later
+  std::array<unsigned char, kCapacity> previous_;
+  std::array<unsigned char, kCapacity> next_;
+  std::array<unsigned char, kCapacity> reflex_; // not convex at first: none becomes so later
   int reflexCount_ = 0;
-  // Squared length of (x, y) in the true plane, over the ratio of a true area to a projected one:
-  // xx x^2 + xy x y + yy y^2.
+  int size_;
+  // Squared length of (x, y) in the true plane: xx x^2 + xy x y + yy y^2.
   double xx_;
   double xy_;
   double yy_;
-  int left_;
-  int anyLeft_ = 0;
+  double flat_; // kFlat over the ratio of a true area to a projected one
 };
 
 } // namespace undecimate

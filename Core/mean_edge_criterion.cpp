@@ -86,15 +86,22 @@ void MeanEdgeCriterion::addEdge(Index a, Index b, int sign)
 namespace
 {
 
-// The plane of a hole drifts from step to step, so what is right in the plane may still be a fold.
-bool isUnfolded(const Hole& hole, const Vector* ring, const Vector& normal,
-  const HoleTriangulation& filling, const HeightFieldDirection& heightField)
+struct Ring
 {
-  const int last = hole.size - 1;
+  std::array<Vector, kMaximumPatchCells + 1> nodes;  // seen from the removed node
+  std::array<Vector, kMaximumPatchCells> oldNormals; // of the removed triangles, twice their area
+  Vector normal{ 0.0, 0.0, 0.0 };                    // their sum
+};
+
+// The plane of a hole drifts from step to step, so what is right in the plane may still be a fold.
+bool isUnfolded(const Hole& hole, const Ring& ring, const HoleTriangulation& filling,
+  const HeightFieldDirection& heightField)
+{
   for (int t = 0; t < filling.count; ++t)
   {
     const auto& corners = filling.triangles[t];
-    const FilledTriangle triangle(ring[corners[0]], ring[corners[1]], ring[corners[2]]);
+    const FilledTriangle triangle(
+      ring.nodes[corners[0]], ring.nodes[corners[1]], ring.nodes[corners[2]]);
     if (triangle.degenerate() || !heightField.allows(triangle))
     {
       return false;
@@ -104,16 +111,16 @@ bool isUnfolded(const Hole& hole, const Vector* ring, const Vector& normal,
     {
       const int from = corners[c];
       const int to = corners[nextCorner(c)];
-      if (to == from + 1 || (from == last && to == 0 && !hole.boundary))
+      if (from < hole.triangleCount && to == (from + 1 == hole.size ? 0 : from + 1))
       {
         onRing = true;
-        if (!triangle.follows(cross(ring[from], ring[to])))
+        if (!triangle.follows(ring.oldNormals[from]))
         {
           return false;
         }
       }
     }
-    if (!onRing && !triangle.follows(normal))
+    if (!onRing && !triangle.follows(ring.normal))
     {
       return false;
     }
@@ -136,23 +143,19 @@ bool MeanEdgeCriterion::retriangulate(
   {
     return true;
   }
-  std::array<Vector, kMaximumPatchCells + 1> ring;
+  Ring ring;
   const Vector center = this->points_[node];
   for (int i = 0; i < hole.size; ++i)
   {
-    ring[i] = this->points_[hole.ring[i]] - center;
+    ring.nodes[i] = this->points_[hole.ring[i]] - center;
     this->prefetch(hole.ring[i]); // to be updated
   }
-  Vector normal{ 0.0, 0.0, 0.0 };
-  for (int i = 1; i < hole.size; ++i)
+  for (int i = 0; i < hole.triangleCount; ++i)
   {
-    normal = normal + cross(ring[i - 1], ring[i]);
+    ring.oldNormals[i] = cross(ring.nodes[i], ring.nodes[i + 1 == hole.size ? 0 : i + 1]);
+    ring.normal = ring.normal + ring.oldNormals[i];
   }
-  if (!hole.boundary)
-  {
-    normal = normal + cross(ring[hole.size - 1], ring[0]);
-  }
-  EarCutting ears(ring.data(), hole.size, normal);
+  EarCutting ears(ring.nodes.data(), hole.size, ring.normal);
   // In the plane of the mean normal no old triangle may lie upside down, else the hole is not the
   // polygon that the plane shows.
   if (!ears.seesFan(hole.triangleCount))
@@ -167,7 +170,7 @@ bool MeanEdgeCriterion::retriangulate(
       return closing || !this->topology_.mayHaveEdge(hole.ring[i], hole.ring[j]);
     },
     filling);
-  return cut && isUnfolded(hole, ring.data(), normal, filling, this->heightField_);
+  return cut && isUnfolded(hole, ring, filling, this->heightField_);
 }
 
 void MeanEdgeCriterion::removed(const Hole& hole, const HoleTriangulation& filling)
@@ -178,21 +181,15 @@ void MeanEdgeCriterion::removed(const Hole& hole, const HoleTriangulation& filli
     neighbour.sum -= this->quantity(hole.node, hole.ring[i]);
     --neighbour.edges;
   }
-  const int last = hole.size - 1;
-  for (int t = 0; t < filling.count; ++t)
+  // Every ear but the last one leaves a diagonal behind; at the boundary the hole closes as well.
+  for (int t = 0; t + 1 < filling.count; ++t)
   {
     const auto& triangle = filling.triangles[t];
-    for (int c = 0; c < 3; ++c)
-    {
-      const int from = triangle[c];
-      const int to = triangle[nextCorner(c)];
-      // A diagonal is met from both sides, and added when it leads upwards; the edges of the ring
-      // were there but for the one that closes it at the boundary.
-      if (to > from + 1 || (hole.boundary && from == last && to == 0))
-      {
-        this->addEdge(hole.ring[from], hole.ring[to], 1);
-      }
-    }
+    this->addEdge(hole.ring[triangle[0]], hole.ring[triangle[2]], 1);
+  }
+  if (hole.boundary && filling.count > 0)
+  {
+    this->addEdge(hole.ring[0], hole.ring[hole.size - 1], 1);
   }
 }
 

@@ -323,15 +323,8 @@ bool TriangleTopology::fillsExistingTriangle(const Hole& hole) const
 
 void TriangleTopology::replace(const Hole& hole, const HoleTriangulation& filling)
 {
-  const auto slot = [&](int i) { return triangleOf(hole.corners[i]); };
-  const auto link = [this](Corner a, Corner b)
-  {
-    this->triangles_[triangleOf(a)].across[cornerOf(a)] = b;
-    if (b != kNoCorner)
-    {
-      this->triangles_[triangleOf(b)].across[cornerOf(b)] = a;
-    }
-  };
+  this->nodes_[hole.node].kind = NodeKind::Removed;
+  const int last = hole.size - 1;
   if (filling.count == 0)
   {
     // A boundary node with one triangle: the triangle behind it gets a boundary edge.
@@ -340,66 +333,45 @@ void TriangleTopology::replace(const Hole& hole, const HoleTriangulation& fillin
     this->nodes_[hole.ring[0]].corner =
       makeCorner(triangleOf(outer), previousCorner(cornerOf(outer)));
     this->nodes_[hole.ring[1]].corner = makeCorner(triangleOf(outer), nextCorner(cornerOf(outer)));
+    return;
   }
-  // Diagonals waiting for their other side: at most size - 3. Two arrays, not one of structures:
-  // the last one is moved soon after it was written, and a copy of it in one piece would have to
-  // wait.
-  std::array<int, kMaximumPatchCells> waitingEdges;
-  std::array<Corner, kMaximumPatchCells> waitingCorners;
-  int waiting = 0;
-  const auto edgeOf = [](int from, int to) { return from << 8 | to; };
-  const int last = hole.size - 1;
-  for (int i = 0; i < filling.count; ++i)
+  // What lies behind the edge from each corner of the polygon that is left to the next one.
+  std::array<Corner, kMaximumPatchCells + 1> behind;
+  std::copy_n(hole.outer.begin(), hole.triangleCount, behind.begin());
+  if (hole.boundary)
   {
-    const Index s = slot(i);
-    const auto& corners = filling.triangles[i];
-    Triangle& t = this->triangles_[s];
-    for (int c = 0; c < 3; ++c)
-    {
-      t.nodes[c] = hole.ring[corners[c]];
-      this->nodes_[t.nodes[c]].corner = makeCorner(s, c);
-    }
-    for (int c = 0; c < 3; ++c)
-    {
-      const int from = corners[nextCorner(c)];
-      const int to = corners[previousCorner(c)];
-      const Corner here = makeCorner(s, c);
-      if (to == from + 1)
-      {
-        link(here, hole.outer[from]);
-        continue;
-      }
-      if (from == last && to == 0)
-      {
-        link(here, hole.boundary ? kNoCorner : hole.outer[from]);
-        if (hole.boundary)
-        {
-          this->meet(hole.ring[from], hole.ring[to]);
-        }
-        continue;
-      }
-      int w = 0;
-      while (w < waiting && waitingEdges[w] != edgeOf(to, from))
-      {
-        ++w;
-      }
-      if (w < waiting)
-      {
-        link(here, waitingCorners[w]);
-        --waiting;
-        waitingEdges[w] = waitingEdges[waiting];
-        waitingCorners[w] = waitingCorners[waiting];
-      }
-      else
-      {
-        waitingEdges[waiting] = edgeOf(from, to);
-        waitingCorners[waiting] = here;
-        ++waiting;
-        this->meet(hole.ring[from], hole.ring[to]);
-      }
-    }
+    behind[last] = kNoCorner;
+    this->meet(hole.ring[0], hole.ring[last]);
   }
-  this->nodes_[hole.node].kind = NodeKind::Removed;
+  const auto link = [this](Corner here, Corner there)
+  {
+    if (there != kNoCorner)
+    {
+      this->triangles_[triangleOf(there)].across[cornerOf(there)] = here;
+    }
+    return there;
+  };
+  for (int i = 0;; ++i)
+  {
+    const auto [previous, ear, next] = filling.triangles[i];
+    const Index slot = triangleOf(hole.corners[i]);
+    Triangle& t = this->triangles_[slot];
+    const Index previousNode = hole.ring[previous];
+    const Index nextNode = hole.ring[next];
+    t.nodes = { previousNode, hole.ring[ear], nextNode };
+    this->nodes_[hole.ring[ear]].corner = makeCorner(slot, 1);
+    t.across[0] = link(makeCorner(slot, 0), behind[ear]);
+    t.across[2] = link(makeCorner(slot, 2), behind[previous]);
+    if (i + 1 == filling.count)
+    {
+      t.across[1] = link(makeCorner(slot, 1), behind[next]);
+      this->nodes_[previousNode].corner = makeCorner(slot, 0);
+      this->nodes_[nextNode].corner = makeCorner(slot, 2);
+      return;
+    }
+    behind[previous] = makeCorner(slot, 1);
+    this->meet(previousNode, nextNode);
+  }
 }
 
 std::vector<Index> TriangleTopology::cells() const

@@ -59,7 +59,8 @@ struct Hole
            ///< that is opposite to the edge, or kNoCorner
 };
 
-/// A triangulation of a hole: corners are positions in Hole::ring.
+/// A triangulation of a hole: corners are positions in Hole::ring. Each triangle is an ear of what
+/// the ones before have left of the polygon: (the corner before the ear, the ear, the one behind).
 struct HoleTriangulation
 {
   int count = 0; ///< Hole::size - 2 triangles
