@@ -35,18 +35,11 @@ ArrayRange arrayRange(const NodalArrayView& array, Index nodeCount)
   return range;
 }
 
-void keepNonFinite(const NodalArrayView& array, std::vector<unsigned char>& kept)
+bool isFinite(const NodalArrayView& array, Index node)
 {
-  for (std::size_t i = 0; i < kept.size(); ++i)
-  {
-    for (int component = 0; component < array.components; ++component)
-    {
-      if (!std::isfinite(array.values[i * array.components + component]))
-      {
-        kept[i] = 1;
-      }
-    }
-  }
+  const float* value = array.values + std::size_t{ 1 } * array.components * node;
+  return std::all_of(
+    value, value + array.components, [](float component) { return std::isfinite(component); });
 }
 
 } // namespace undecimate

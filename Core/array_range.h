@@ -9,8 +9,6 @@
 
 #include "types.h"
 
-#include <vector>
-
 namespace undecimate
 {
 
@@ -24,8 +22,8 @@ struct ArrayRange
 
 ArrayRange arrayRange(const NodalArrayView& array, Index nodeCount);
 
-/// Flag the nodes at which a component is NaN or infinite.
-void keepNonFinite(const NodalArrayView& array, std::vector<unsigned char>& kept);
+/// Whether all components of a node's value are finite.
+bool isFinite(const NodalArrayView& array, Index node);
 
 } // namespace undecimate
 

@@ -70,14 +70,14 @@ double sharedArea(const Corners& subject, const Corners& window)
 
 } // namespace
 
-void findCellSources(const MeshPoints& points, const Hole& hole, const HoleTriangulation& filling,
+void findCellSources(const TriangleTopology& topology, const Hole& hole, const HoleTriangulation& filling,
   unsigned char* sources)
 {
   std::array<Vector, kMaximumPatchCells + 1> ring;
-  const Vector center = points[hole.node];
+  const Vector center = topology.node(hole.node).position;
   for (int i = 0; i < hole.size; ++i)
   {
-    ring[i] = points[hole.ring[i]] - center;
+    ring[i] = topology.node(hole.ring[i]).position - center;
   }
   Vector normal{ 0.0, 0.0, 0.0 };
   for (int i = 0; i < hole.triangleCount; ++i)

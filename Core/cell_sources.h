@@ -7,7 +7,6 @@
 #ifndef UNDECIMATE_CORE_CELL_SOURCES_H
 #define UNDECIMATE_CORE_CELL_SOURCES_H
 
-#include "mesh_points.h"
 #include "triangle_topology.h"
 
 namespace undecimate
@@ -17,7 +16,7 @@ namespace undecimate
 /// largest area, seen along the mean normal of the old ones; the first of equals.
 /// @param[out] sources filling.count entries
 /// Complexity: O(old * new).
-void findCellSources(const MeshPoints& points, const Hole& hole, const HoleTriangulation& filling,
+void findCellSources(const TriangleTopology& topology, const Hole& hole, const HoleTriangulation& filling,
   unsigned char* sources);
 
 } // namespace undecimate

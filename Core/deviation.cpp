@@ -56,7 +56,7 @@ double squaredDistanceToSegment(const Vector& p, const Vector& a, const Vector& 
 }
 
 /// The box of all finite points that a triangle uses.
-double diagonalOf(const TriangleTopology& topology, const MeshPoints& points)
+double diagonalOf(const TriangleTopology& topology)
 {
   Vector low{ HUGE_VAL, HUGE_VAL, HUGE_VAL };
   Vector high{ -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
@@ -64,9 +64,9 @@ double diagonalOf(const TriangleTopology& topology, const MeshPoints& points)
   {
     for (const Index node : topology.triangle(t).nodes)
     {
-      if (points.finite(node))
+      const Vector& p = topology.node(node).position;
+      if (isFinite(p))
       {
-        const Vector p = points[node];
         low = { std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z) };
         high = { std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z) };
       }
@@ -126,7 +126,6 @@ struct Rows
 struct DeviationCriterion::Internals
 {
   TriangleTopology& topology;
-  const MeshPoints& points;
   HeightFieldDirection heightField;
   double unit = 0.0; // 1 / diagonal: distances are in diagonals from the start
 
@@ -198,11 +197,9 @@ struct DeviationCriterion::Internals
   Best best;
   std::vector<unsigned char> assignment; // triangle of the best filling for each sample
 
-  Internals(TriangleTopology& topology_, const MeshPoints& points_,
-    const std::vector<NodalArrayView>& arrays_)
+  Internals(TriangleTopology& topology_, const std::vector<NodalArrayView>& arrays_)
     : topology(topology_)
-    , points(points_)
-    , heightField(topology_, points_)
+    , heightField(topology_)
     , arrays(arrays_)
   {
   }
@@ -250,13 +247,13 @@ struct DeviationCriterion::Internals
   double cost() const;
 };
 
-DeviationCriterion::DeviationCriterion(TriangleTopology& topology, const MeshPoints& points,
-  const std::vector<NodalArrayView>& arrays, double scalarWeight, std::vector<unsigned char>& kept)
-  : internals_(std::make_unique<Internals>(topology, points, arrays))
+DeviationCriterion::DeviationCriterion(
+  TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, double scalarWeight)
+  : internals_(std::make_unique<Internals>(topology, arrays))
 {
   Internals& in = *this->internals_;
-  const Index nodeCount = static_cast<Index>(kept.size());
-  const double diagonal = diagonalOf(topology, points);
+  const Index nodeCount = topology.nodeCount();
+  const double diagonal = diagonalOf(topology);
   in.unit = diagonal > 0.0 ? 1.0 / diagonal : 0.0;
   if (scalarWeight > 0.0)
   {
@@ -267,18 +264,15 @@ DeviationCriterion::DeviationCriterion(TriangleTopology& topology, const MeshPoi
       in.arrayScales.push_back(range > 0.0 ? scalarWeight / range : 0.0);
       in.useArrays = in.useArrays || range > 0.0;
     }
-    in.undefined.assign(nodeCount, 0);
-    for (const NodalArrayView& array : arrays)
-    {
-      keepNonFinite(array, in.undefined);
-    }
     for (Index node = 0; node < nodeCount; ++node)
     {
-      kept[node] |= in.undefined[node];
-    }
-    if (std::find(in.undefined.begin(), in.undefined.end(), 1) == in.undefined.end())
-    {
-      in.undefined = {};
+      if (!std::all_of(arrays.begin(), arrays.end(),
+            [node](const NodalArrayView& array) { return isFinite(array, node); }))
+      {
+        in.undefined.resize(nodeCount, 0);
+        in.undefined[node] = 1;
+        topology.node(node).kept = true;
+      }
     }
   }
   in.next.assign(nodeCount, kNone);
@@ -302,7 +296,7 @@ DeviationCriterion::~DeviationCriterion() = default;
 // Geometry of the hole, relative to its node.
 bool DeviationCriterion::Internals::prepare(const Hole& hole)
 {
-  const Vector center = this->points[hole.node];
+  const Vector center = this->topology.node(hole.node).position;
   double square = 0.0;
   for (int i = 0; i < hole.size; ++i)
   {
@@ -310,7 +304,7 @@ bool DeviationCriterion::Internals::prepare(const Hole& hole)
     {
       return false;
     }
-    this->ring[i] = this->unit * (this->points[hole.ring[i]] - center);
+    this->ring[i] = this->unit * (this->topology.node(hole.ring[i]).position - center);
     square = std::max(square, dot(this->ring[i], this->ring[i]));
   }
   this->radius = std::sqrt(square);
@@ -331,7 +325,7 @@ bool DeviationCriterion::Internals::prepare(const Hole& hole)
 
 void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
 {
-  const Vector center = this->points[hole.node];
+  const Vector center = this->topology.node(hole.node).position;
   this->samples.clear();
   this->sampleNodes.clear();
   this->samples.add(kOrigin);
@@ -341,7 +335,7 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
     for (Index node = this->topology.triangle(triangleOf(hole.corners[i])).first; node != kNone;
          node = this->next[node])
     {
-      this->samples.add(this->unit * (this->points[node] - center));
+      this->samples.add(this->unit * (this->topology.node(node).position - center));
       this->sampleNodes.push_back(node);
     }
   }
@@ -374,7 +368,7 @@ void DeviationCriterion::Internals::boundarySquare(const Hole& hole)
     return;
   }
   const int last = hole.size - 1;
-  const Vector center = this->points[hole.node];
+  const Vector center = this->topology.node(hole.node).position;
   const auto measure = [&](const Vector& p)
   {
     this->fixedSquare =
@@ -385,7 +379,7 @@ void DeviationCriterion::Internals::boundarySquare(const Hole& hole)
   {
     for (Index node = this->boundaryFirst[edge]; node != kNone; node = this->boundaryNext[node])
     {
-      measure(this->unit * (this->points[node] - center));
+      measure(this->unit * (this->topology.node(node).position - center));
     }
   }
 }
@@ -910,11 +904,11 @@ bool DeviationCriterion::Internals::findBest(const Hole& hole)
     // The triangle at a corner of the boundary goes; what it had is measured to the edge that
     // stays.
     double square = this->fixedSquare;
-    const Vector center = this->points[hole.node];
+    const Vector center = this->topology.node(hole.node).position;
     const Vector along = this->ring[1] - this->ring[0];
     for (const Index node : this->sampleNodes)
     {
-      const Vector place = this->unit * (this->points[node] - center);
+      const Vector place = this->unit * (this->topology.node(node).position - center);
       square = std::max(square, squaredDistanceToSegment(place, this->ring[0], this->ring[1]));
       if (this->useArrays)
       {

@@ -31,7 +31,6 @@
 #define UNDECIMATE_CORE_DEVIATION_H
 
 #include "array_range.h"
-#include "mesh_points.h"
 #include "triangle_topology.h"
 
 #include <memory>
@@ -46,13 +45,11 @@ public:
   /// Neighbours of a removed node are evaluated when their turn comes.
   static constexpr bool kLazy = true;
 
-  /// Nodes where an array is NaN or infinite are `kept`.
-  DeviationCriterion(TriangleTopology& topology, const MeshPoints& points,
-    const std::vector<NodalArrayView>& arrays, double scalarWeight,
-    std::vector<unsigned char>& kept);
+  /// Nodes where an array is NaN or infinite are kept from now on.
+  /// @param topology with the positions of the nodes
+  DeviationCriterion(
+    TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, double scalarWeight);
   ~DeviationCriterion();
-
-  void prefetch(Index /*node*/) const {}
 
   /// Cost of the best triangulation; false if there is none.
   bool evaluate(Index node, double& cost);

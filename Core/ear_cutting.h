@@ -15,40 +15,12 @@
 #define UNDECIMATE_CORE_EAR_CUTTING_H
 
 #include "triangle_topology.h"
+#include "vector.h"
 
 #include <array>
 
 namespace undecimate
 {
-
-struct Vector
-{
-  // Not initialized: arrays of them are filled by their owners, and often only in part.
-  double x;
-  double y;
-  double z;
-};
-
-inline Vector operator-(const Vector& a, const Vector& b)
-{
-  return { a.x - b.x, a.y - b.y, a.z - b.z };
-}
-inline Vector operator+(const Vector& a, const Vector& b)
-{
-  return { a.x + b.x, a.y + b.y, a.z + b.z };
-}
-inline Vector operator*(double s, const Vector& a)
-{
-  return { s * a.x, s * a.y, s * a.z };
-}
-inline double dot(const Vector& a, const Vector& b)
-{
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vector cross(const Vector& a, const Vector& b)
-{
-  return { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
-}
 
 /// The polygon of a hole in the plane, and which of its corners are ears.
 class EarCutting

@@ -12,8 +12,6 @@
 #ifndef UNDECIMATE_CORE_FOLD_RULE_H
 #define UNDECIMATE_CORE_FOLD_RULE_H
 
-#include "ear_cutting.h"
-#include "mesh_points.h"
 #include "triangle_topology.h"
 
 #include <algorithm>
@@ -87,16 +85,17 @@ private:
 class HeightFieldDirection
 {
 public:
-  /// Looks at all triangles that have an area; most other meshes are told by their first few.
-  HeightFieldDirection(const TriangleTopology& topology, const MeshPoints& points)
+  /// Looks at all triangles that have an area, by the nodes' positions; most other meshes are told by their first few.
+  explicit HeightFieldDirection(const TriangleTopology& topology)
   {
     bool facing[6] = { true, true, true, true, true, true };
     bool any = false;
     for (Index t = 0; t < topology.triangleCount(); ++t)
     {
       const auto& nodes = topology.triangle(t).nodes;
-      const Vector a = points[nodes[0]];
-      const Vector n = cross(points[nodes[1]] - a, points[nodes[2]] - a);
+      const Vector& a = topology.node(nodes[0]).position;
+      const Vector n = cross(
+        topology.node(nodes[1]).position - a, topology.node(nodes[2]).position - a);
       if (!(dot(n, n) > 0.0))
       {
         continue;

@@ -51,12 +51,9 @@ Index ExponentialIntervals::interval(double value) const
   return j <= 0.0 ? 0 : std::min(static_cast<Index>(j), this->count_ - 1);
 }
 
-HashQueue::HashQueue(Index nodeCount, Index intervalCount)
-  : links_(nodeCount)
-  , ends_(std::max<Index>(1, intervalCount), Ends{ kNone, kNone })
-  , intervalCount_(std::max<Index>(1, intervalCount))
+IntervalBits::IntervalBits(Index intervalCount)
 {
-  std::size_t words = this->intervalCount_;
+  std::size_t words = intervalCount;
   for (auto& level : this->bits_)
   {
     words = (words + 63) / 64;
@@ -64,64 +61,24 @@ HashQueue::HashQueue(Index nodeCount, Index intervalCount)
   }
 }
 
-void HashQueue::mark(Index interval)
+// Up to the first level that has a bit behind the interval, and down again.
+Index IntervalBits::above(Index interval) const
 {
-  for (auto& level : this->bits_)
-  {
-    std::uint64_t& word = level[interval >> 6];
-    const bool known = word != 0;
-    word |= std::uint64_t{ 1 } << (interval & 63);
-    if (known)
-    {
-      return;
-    }
-    interval >>= 6;
-  }
-}
-
-void HashQueue::unmark(Index interval)
-{
-  for (auto& level : this->bits_)
-  {
-    std::uint64_t& word = level[interval >> 6];
-    word &= ~(std::uint64_t{ 1 } << (interval & 63));
-    if (word != 0)
-    {
-      return;
-    }
-    interval >>= 6;
-  }
-}
-
-// The lowest non-empty interval above another one: up to the first level that has a bit behind it,
-// and down again.
-Index HashQueue::nextInterval(Index interval) const
-{
-  for (int level = 0; level < 4; ++level, interval >>= 6)
+  for (int level = 0; level < kLevels; ++level, interval >>= 6)
   {
     const std::uint64_t behind = ~std::uint64_t{ 1 } << (interval & 63);
-    std::uint64_t word = this->bits_[level][interval >> 6] & behind;
+    const std::uint64_t word = this->bits_[level][interval >> 6] & behind;
     if (word != 0)
     {
-      interval = (interval & ~Index{ 63 }) + __builtin_ctzll(word);
+      interval = (interval & ~Index{ 63 }) + lowestBit(word);
       while (level > 0)
       {
-        interval = (interval << 6) + __builtin_ctzll(this->bits_[--level][interval]);
+        interval = (interval << 6) + lowestBit(this->bits_[--level][interval]);
       }
       return interval;
     }
   }
   return kNone;
-}
-
-Index HashQueue::pop()
-{
-  const Index node = this->front();
-  if (node != kNone)
-  {
-    this->remove(node);
-  }
-  return node;
 }
 
 } // namespace undecimate

@@ -9,10 +9,13 @@
 #ifndef UNDECIMATE_CORE_HASH_QUEUE_H
 #define UNDECIMATE_CORE_HASH_QUEUE_H
 
+#include "compiler.h"
 #include "large_array.h"
 #include "types.h"
 
+#include <algorithm>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 namespace undecimate
@@ -60,83 +63,179 @@ private:
   Index count_;
 };
 
+/// A bit for each interval that is not empty, and a bit for each word of bits that is not zero: four
+/// levels find the lowest interval in four steps.
+class IntervalBits
+{
+public:
+  explicit IntervalBits(Index intervalCount);
+
+  void mark(Index interval);
+  void unmark(Index interval);
+
+  /// The lowest interval that is marked; there must be one.
+  Index lowest() const;
+
+  /// The lowest marked interval above another one, kNone if there is none.
+  Index above(Index interval) const;
+
+private:
+  static constexpr int kLevels = 4;
+  std::vector<std::uint64_t> bits_[kLevels];
+};
+
+/// Place of a node in the queue.
+struct QueueLinks
+{
+  Index next = kNone;
+  Index previous = kNone;
+  Index interval = kNone; ///< kNone: not in the queue
+};
+
 /// A priority queue of nodes that is exact to the width of an interval, with all operations in
 /// O(1).
 ///
 /// The next node is the first of the lowest non-empty interval; within an interval nodes leave in
 /// the order in which they came, which spreads the removals over the mesh ([K03] 1.2). Doubly
-/// linked lists in flat arrays, and a four-level bit set that finds the lowest non-empty interval.
+/// linked lists, and IntervalBits that find the lowest non-empty interval.
 ///
-/// Memory: 12 bytes a node and 8 bytes an interval.
-class HashQueue
+/// @tparam LinksOf QueueLinks& operator()(Index node) const: where the links of a node are stored;
+/// at first none is in the queue
+/// Memory: 12 bytes a node, in the links, and 8 bytes an interval.
+template <typename LinksOf>
+class HashQueueOn
 {
 public:
-  /// Room for nodes 0 .. nodeCount - 1 in `intervalCount` intervals (1 .. 2^24). Empty.
-  HashQueue(Index nodeCount, Index intervalCount);
+  /// An empty queue of `intervalCount` intervals (1 .. 2^24).
+  HashQueueOn(LinksOf linksOf, Index intervalCount)
+    : linksOf_(std::move(linksOf))
+    , ends_(std::max<Index>(1, intervalCount), Ends{ kNone, kNone })
+    , bits_(this->intervalCount())
+  {
+  }
 
-  Index intervalCount() const { return this->intervalCount_; }
+  Index intervalCount() const { return static_cast<Index>(this->ends_.size()); }
 
   /// Nodes in the queue.
   Index size() const { return this->size_; }
   bool empty() const { return this->size_ == 0; }
-  bool contains(Index node) const { return this->links_[node].interval != kNone; }
+  bool contains(Index node) const { return this->linksOf_(node).interval != kNone; }
 
   /// Interval of a node, kNone if it is not in the queue.
-  Index interval(Index node) const { return this->links_[node].interval; }
+  Index interval(Index node) const { return this->linksOf_(node).interval; }
 
   /// Put a node at the end of an interval; if it is in the queue already it leaves its place.
-  void insert(Index node, Index interval);
+  void insert(Index node, Index interval)
+  {
+    this->remove(node);
+    Ends& ends = this->ends_[interval];
+    this->linksOf_(node) = { kNone, ends.last, interval };
+    if (ends.last == kNone)
+    {
+      ends.first = node;
+      this->bits_.mark(interval);
+    }
+    else
+    {
+      this->linksOf_(ends.last).next = node;
+    }
+    ends.last = node;
+    ++this->size_;
+  }
 
   /// Take a node out; nothing happens if it is not in.
-  void remove(Index node);
+  void remove(Index node)
+  {
+    QueueLinks& links = this->linksOf_(node);
+    const Index interval = links.interval;
+    if (interval == kNone)
+    {
+      return;
+    }
+    const Index next = links.next;
+    const Index previous = links.previous;
+    links.interval = kNone;
+    Ends& ends = this->ends_[interval];
+    (previous == kNone ? ends.first : this->linksOf_(previous).next) = next;
+    (next == kNone ? ends.last : this->linksOf_(next).previous) = previous;
+    if (ends.first == kNone)
+    {
+      this->bits_.unmark(interval);
+    }
+    --this->size_;
+  }
 
   /// Lowest non-empty interval, kNone if empty.
-  Index lowestInterval() const;
+  Index lowestInterval() const { return this->size_ == 0 ? kNone : this->bits_.lowest(); }
 
   /// First node of the lowest non-empty interval, kNone if empty; it stays in.
-  Index front() const;
+  Index front() const
+  {
+    return this->size_ == 0 ? kNone : this->ends_[this->bits_.lowest()].first;
+  }
 
   /// The node behind another one in its interval, kNone if it is the last.
-  Index after(Index node) const { return this->links_[node].next; }
+  Index after(Index node) const { return this->linksOf_(node).next; }
 
   /// The node that leaves behind another one if the queue stays as it is, kNone if there is none.
   Index upcoming(Index node) const
   {
-    const Links& links = this->links_[node];
+    const QueueLinks& links = this->linksOf_(node);
     if (links.next != kNone)
     {
       return links.next;
     }
-    const Index interval = this->nextInterval(links.interval);
+    const Index interval = this->bits_.above(links.interval);
     return interval == kNone ? kNone : this->ends_[interval].first;
   }
 
-  void prefetch(Index node) const { __builtin_prefetch(&this->links_[node]); }
-
   /// front(), taken out.
-  Index pop();
+  Index pop()
+  {
+    const Index node = this->front();
+    if (node != kNone)
+    {
+      this->remove(node);
+    }
+    return node;
+  }
 
 private:
-  void mark(Index interval);
-  void unmark(Index interval);
-  Index nextInterval(Index interval) const;
-
-  struct Links
-  {
-    Index next = kNone;
-    Index previous = kNone;
-    Index interval = kNone;
-  };
   struct Ends
   {
     Index first;
     Index last;
   };
-  LargeArray<Links, 3> links_;
+  LinksOf linksOf_;
   std::vector<Ends> ends_;
-  std::vector<std::uint64_t> bits_[4]; // bits_[0]: a bit an interval; above: a bit a non-zero word
-  Index intervalCount_;
+  IntervalBits bits_;
   Index size_ = 0;
+};
+
+/// Links in an array of their own.
+class LinksArray
+{
+public:
+  explicit LinksArray(Index nodeCount)
+    : links_(nodeCount)
+  {
+  }
+  QueueLinks& operator()(Index node) { return this->links_[node]; }
+  const QueueLinks& operator()(Index node) const { return this->links_[node]; }
+
+private:
+  LargeArray<QueueLinks, 3> links_;
+};
+
+/// The hash queue by itself.
+class HashQueue : public HashQueueOn<LinksArray>
+{
+public:
+  /// Room for nodes 0 .. nodeCount - 1 in `intervalCount` intervals (1 .. 2^24). Empty.
+  HashQueue(Index nodeCount, Index intervalCount)
+    : HashQueueOn(LinksArray(nodeCount), intervalCount)
+  {
+  }
 };
 
 /// Number of intervals of IntervalSpacing::Logarithmic.
@@ -159,64 +258,43 @@ inline Index logarithmicInterval(float value)
   return static_cast<Index>(bits >> 16);
 }
 
-inline void HashQueue::insert(Index node, Index interval)
+inline void IntervalBits::mark(Index interval)
 {
-  this->remove(node);
-  Ends& ends = this->ends_[interval];
-  this->links_[node] = { kNone, ends.last, interval };
-  if (ends.last == kNone)
+  for (auto& level : this->bits_)
   {
-    ends.first = node;
-    this->mark(interval);
+    std::uint64_t& word = level[interval >> 6];
+    const bool known = word != 0;
+    word |= std::uint64_t{ 1 } << (interval & 63);
+    if (known)
+    {
+      return;
+    }
+    interval >>= 6;
   }
-  else
-  {
-    this->links_[ends.last].next = node;
-  }
-  ends.last = node;
-  ++this->size_;
 }
 
-inline void HashQueue::remove(Index node)
+inline void IntervalBits::unmark(Index interval)
 {
-  Links& links = this->links_[node];
-  const Index interval = links.interval;
-  if (interval == kNone)
+  for (auto& level : this->bits_)
   {
-    return;
+    std::uint64_t& word = level[interval >> 6];
+    word &= ~(std::uint64_t{ 1 } << (interval & 63));
+    if (word != 0)
+    {
+      return;
+    }
+    interval >>= 6;
   }
-  const Index next = links.next;
-  const Index previous = links.previous;
-  links.interval = kNone;
-  Ends& ends = this->ends_[interval];
-  (previous == kNone ? ends.first : this->links_[previous].next) = next;
-  (next == kNone ? ends.last : this->links_[next].previous) = previous;
-  if (ends.first == kNone)
-  {
-    this->unmark(interval);
-  }
-  --this->size_;
 }
 
-inline Index HashQueue::lowestInterval() const
+inline Index IntervalBits::lowest() const
 {
-  if (this->size_ == 0)
-  {
-    return kNone;
-  }
   Index interval = 0;
-  for (int level = 3; level >= 0; --level)
+  for (int level = kLevels - 1; level >= 0; --level)
   {
-    const std::uint64_t word = this->bits_[level][interval];
-    interval = (interval << 6) + __builtin_ctzll(word);
+    interval = (interval << 6) + lowestBit(this->bits_[level][interval]);
   }
   return interval;
-}
-
-inline Index HashQueue::front() const
-{
-  const Index interval = this->lowestInterval();
-  return interval == kNone ? kNone : this->ends_[interval].first;
 }
 
 } // namespace undecimate

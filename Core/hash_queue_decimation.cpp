@@ -17,6 +17,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace undecimate
 {
@@ -101,17 +102,14 @@ template <typename CriterionType>
 class Decimation
 {
 public:
-  Decimation(TriangleTopology& topology, const MeshPoints& points, CriterionType& criterion,
-    const std::vector<unsigned char>& kept, const HashQueueDecimationOptions& options,
-    const Goal& goal, Monitor& monitor)
+  Decimation(TriangleTopology& topology, CriterionType& criterion,
+    const HashQueueDecimationOptions& options, const Goal& goal, Monitor& monitor)
     : topology_(topology)
-    , points_(points)
     , criterion_(criterion)
-    , kept_(kept)
     , options_(options)
     , goal_(goal)
     , monitor_(monitor)
-    , nodeCount_(static_cast<Index>(kept.size()))
+    , nodeCount_(topology.nodeCount())
     , trianglesLeft_(topology.triangleCount())
     , nodesLeft_(this->nodeCount_)
   {
@@ -128,7 +126,7 @@ public:
       return Status::Cancelled;
     }
     const Intervals intervals(this->options_, costs);
-    HashQueue queue(this->nodeCount_, intervals.count());
+    Queue queue({ &this->topology_ }, intervals.count());
     for (Index node = 0; node < this->nodeCount_; ++node)
     {
       if (costs[node] >= 0.0F)
@@ -177,11 +175,6 @@ public:
         tooCostly = true;
         continue;
       }
-      for (int i = 0; i < this->hole_.size; ++i)
-      {
-        queue.prefetch(this->hole_.ring[i]);
-        __builtin_prefetch(&this->kept_[this->hole_.ring[i]]);
-      }
       this->remove(builder, cost);
       // Step 6: re-evaluate the neighbours; they go to the end of their interval's queue.
       this->reevaluate(queue, intervals, interval);
@@ -193,6 +186,13 @@ public:
   }
 
 private:
+  struct NodeLinks
+  {
+    TriangleTopology* topology;
+    QueueLinks& operator()(Index node) const { return this->topology->node(node).links; }
+  };
+  using Queue = HashQueueOn<NodeLinks>;
+
   // Share of the progress that the first evaluation gets.
   static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
 
@@ -206,7 +206,7 @@ private:
         return false;
       }
       double cost = 0.0;
-      if (!this->kept_[node] && this->criterion_.evaluate(node, cost))
+      if (!this->topology_.node(node).kept && this->criterion_.evaluate(node, cost))
       {
         costs[node] = static_cast<float>(cost);
       }
@@ -238,7 +238,7 @@ private:
 
   // The next nodes are known, and waiting for their memory would take most of the time. Each stage
   // uses what the ones before have brought.
-  void prefetch(const HashQueue& queue) const
+  void prefetch(const Queue& queue) const
   {
     std::array<Index, 5> next;
     Index node = queue.front();
@@ -249,7 +249,6 @@ private:
     }
     if (next[4] != kNone)
     {
-      queue.prefetch(next[4]);
       this->topology_.prefetchNode(next[4]);
     }
     if (next[3] != kNone)
@@ -262,14 +261,7 @@ private:
     }
     if (next[1] != kNone)
     {
-      this->topology_.prefetchRing(next[1],
-        [&](Index ringNode)
-        {
-          this->points_.prefetch(ringNode);
-          this->criterion_.prefetch(ringNode);
-          queue.prefetch(ringNode);
-          __builtin_prefetch(&this->kept_[ringNode]);
-        });
+      this->topology_.prefetchRing(next[1]);
     }
   }
 
@@ -295,7 +287,7 @@ private:
     }
     if (this->options_.trackCellSources)
     {
-      findCellSources(this->points_, hole, filling, this->sources_.data());
+      findCellSources(this->topology_, hole, filling, this->sources_.data());
     }
     RecordBuilder::Step step;
     step.node = hole.node;
@@ -315,12 +307,12 @@ private:
     --this->nodesLeft_;
   }
 
-  void reevaluate(HashQueue& queue, const Intervals& intervals, Index interval)
+  void reevaluate(Queue& queue, const Intervals& intervals, Index interval)
   {
     for (int i = 0; i < this->hole_.size; ++i)
     {
       const Index node = this->hole_.ring[i];
-      if (this->kept_[node])
+      if (this->topology_.node(node).kept)
       {
         continue;
       }
@@ -339,9 +331,7 @@ private:
   }
 
   TriangleTopology& topology_;
-  const MeshPoints& points_;
   CriterionType& criterion_;
-  const std::vector<unsigned char>& kept_;
   const HashQueueDecimationOptions& options_;
   const Goal& goal_;
   Monitor& monitor_;
@@ -441,72 +431,65 @@ Outcome checkMesh(const TriangleMeshView& mesh)
   return {};
 }
 
-/// Flag the nodes that are never candidates, and count them by reason.
-std::vector<unsigned char> findKeptNodes(const TriangleMeshView& mesh, const MeshPoints& points,
-  const TriangleTopology& topology, bool preserveBoundary, HashQueueDecimationResult& result)
+/// Give the nodes their positions, and flag and count those that are never candidates.
+void prepareNodes(const TriangleMeshView& mesh, bool preserveBoundary, TriangleTopology& topology,
+  HashQueueDecimationResult& result)
 {
-  std::vector<unsigned char> kept(mesh.nodeCount, 0);
-  for (Index node = 0; node < mesh.nodeCount; ++node)
+  const MeshPoints points(mesh);
+  for (Index i = 0; i < topology.nodeCount(); ++i)
   {
+    MeshNode& node = topology.node(i);
+    node.position = points[i];
     Index* counter = nullptr;
-    if (mesh.keep && mesh.keep[node])
+    if (mesh.keep && mesh.keep[i])
     {
       counter = &result.requestedNodes;
     }
-    else if (!points.finite(node))
+    else if (!isFinite(node.position))
     {
       counter = &result.nonFiniteNodes;
     }
-    else if (topology.kind(node) == NodeKind::Unused)
+    else if (node.kind == NodeKind::Unused)
     {
       counter = &result.unusedNodes;
     }
-    else if (topology.kind(node) == NodeKind::Degenerate)
+    else if (node.kind == NodeKind::Degenerate)
     {
       counter = &result.degenerateNodes;
     }
-    else if (topology.kind(node) == NodeKind::NonManifold)
+    else if (node.kind == NodeKind::NonManifold)
     {
       counter = &result.nonManifoldNodes;
     }
-    else if (preserveBoundary && topology.kind(node) == NodeKind::Boundary)
+    else if (preserveBoundary && node.kind == NodeKind::Boundary)
     {
       counter = &result.boundaryNodes;
     }
     if (counter)
     {
       ++*counter;
-      kept[node] = 1;
+      node.kept = true;
     }
   }
-  return kept;
 }
 
 Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
   Monitor& monitor, HashQueueDecimationResult& result)
 {
-  const MeshPoints points(mesh);
   TriangleTopology topology(
     mesh.triangles, static_cast<Index>(mesh.triangleCount), static_cast<Index>(mesh.nodeCount));
-  std::vector<unsigned char> kept =
-    findKeptNodes(mesh, points, topology, options.preserveBoundary, result);
+  prepareNodes(mesh, options.preserveBoundary, topology, result);
   const Goal goal(mesh, options);
-  Status status = Status::Ok;
-  if (options.criterion == Criterion::Deviation)
+  const auto decimateBy = [&](auto&& criterion)
   {
-    DeviationCriterion criterion(topology, points, options.arrays, options.scalarWeight, kept);
-    status =
-      Decimation<DeviationCriterion>(topology, points, criterion, kept, options, goal, monitor)
-        .run(result);
-  }
-  else
-  {
-    MeanEdgeCriterion criterion(topology, points,
-      options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr, kept);
-    status =
-      Decimation<MeanEdgeCriterion>(topology, points, criterion, kept, options, goal, monitor)
-        .run(result);
-  }
+    using CriterionType = std::decay_t<decltype(criterion)>;
+    return Decimation<CriterionType>(topology, criterion, options, goal, monitor).run(result);
+  };
+  const NodalArrayView* array =
+    options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr;
+  const Status status = options.criterion == Criterion::Deviation
+    ? decimateBy(DeviationCriterion(topology, options.arrays, options.scalarWeight))
+    : decimateBy(MeanEdgeCriterion(topology, array));
   return { status, status == Status::Cancelled ? "Cancelled." : "" };
 }
 

@@ -4,6 +4,7 @@
 #include "mean_edge_criterion.h"
 
 #include "array_range.h"
+#include "ear_cutting.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,27 +12,25 @@
 namespace undecimate
 {
 
-MeanEdgeCriterion::MeanEdgeCriterion(const TriangleTopology& topology, const MeshPoints& points,
-  const NodalArrayView* array, std::vector<unsigned char>& kept)
+MeanEdgeCriterion::MeanEdgeCriterion(TriangleTopology& topology, const NodalArrayView* array)
   : topology_(topology)
-  , points_(points)
-  , heightField_(topology, points)
+  , heightField_(topology)
   , array_(array)
   , scalar_(array && array->components == 1)
-  , nodes_(kept.size())
 {
-  const Index nodeCount = static_cast<Index>(kept.size());
   if (array)
   {
-    keepNonFinite(*array, kept);
+    const Index nodeCount = topology.nodeCount();
     const ArrayRange range = arrayRange(*array, nodeCount);
     this->scale_ = range.size > 0.0 ? 1.0 / range.size : 0.0;
-    if (this->scalar_)
+    for (Index i = 0; i < nodeCount; ++i)
     {
-      for (Index i = 0; i < nodeCount; ++i)
+      MeshNode& node = topology.node(i);
+      node.kept = node.kept || !isFinite(*array, i);
+      if (this->scalar_)
       {
         const double value = (array->values[i] - range.lowest[0]) * this->scale_;
-        this->nodes_[i].value =
+        node.value =
           std::isfinite(value) ? static_cast<std::int32_t>(std::lround(value * kUnit)) : -1;
       }
     }
@@ -45,7 +44,7 @@ MeanEdgeCriterion::MeanEdgeCriterion(const TriangleTopology& topology, const Mes
       const Corner across = triangle.across[c];
       if (across == kNoCorner || makeCorner(t, c) < across)
       {
-        this->addEdge(triangle.nodes[nextCorner(c)], triangle.nodes[previousCorner(c)], 1);
+        this->addEdge(triangle.nodes[nextCorner(c)], triangle.nodes[previousCorner(c)]);
       }
     }
   }
@@ -55,7 +54,7 @@ std::int64_t MeanEdgeCriterion::otherQuantity(Index a, Index b) const
 {
   if (!this->array_)
   {
-    const Vector edge = this->points_[b] - this->points_[a];
+    const Vector edge = this->topology_.node(b).position - this->topology_.node(a).position;
     const double flat = std::sqrt(edge.x * edge.x + edge.y * edge.y);
     const double angle = std::atan2(std::abs(edge.z), flat);
     return std::isfinite(angle) ? std::llround(angle * (kUnit / std::acos(0.0))) : kWhole;
@@ -73,14 +72,13 @@ std::int64_t MeanEdgeCriterion::otherQuantity(Index a, Index b) const
   return fraction <= 1.0 ? std::llround(fraction * kUnit) : kWhole;
 }
 
-void MeanEdgeCriterion::addEdge(Index a, Index b, int sign)
+void MeanEdgeCriterion::addEdge(Index a, Index b)
 {
-  const std::int64_t quantity = sign * this->quantity(a, b);
-  for (const Index node : { a, b })
-  {
-    this->nodes_[node].sum += quantity;
-    this->nodes_[node].edges += sign;
-  }
+  MeshNode& nodeA = this->topology_.node(a);
+  MeshNode& nodeB = this->topology_.node(b);
+  const std::uint64_t sum = this->edgeSum(nodeA, nodeB, a, b);
+  nodeA.sum += sum;
+  nodeB.sum += sum;
 }
 
 namespace
@@ -144,11 +142,10 @@ bool MeanEdgeCriterion::retriangulate(
     return true;
   }
   Ring ring;
-  const Vector center = this->points_[node];
+  const Vector center = this->topology_.node(node).position;
   for (int i = 0; i < hole.size; ++i)
   {
-    ring.nodes[i] = this->points_[hole.ring[i]] - center;
-    this->prefetch(hole.ring[i]); // to be updated
+    ring.nodes[i] = this->topology_.node(hole.ring[i]).position - center;
   }
   for (int i = 0; i < hole.triangleCount; ++i)
   {
@@ -175,21 +172,21 @@ bool MeanEdgeCriterion::retriangulate(
 
 void MeanEdgeCriterion::removed(const Hole& hole, const HoleTriangulation& filling)
 {
+  const MeshNode& node = this->topology_.node(hole.node);
   for (int i = 0; i < hole.size; ++i)
   {
-    Node& neighbour = this->nodes_[hole.ring[i]];
-    neighbour.sum -= this->quantity(hole.node, hole.ring[i]);
-    --neighbour.edges;
+    MeshNode& neighbour = this->topology_.node(hole.ring[i]);
+    neighbour.sum -= this->edgeSum(node, neighbour, hole.node, hole.ring[i]);
   }
   // Every ear but the last one leaves a diagonal behind; at the boundary the hole closes as well.
   for (int t = 0; t + 1 < filling.count; ++t)
   {
     const auto& triangle = filling.triangles[t];
-    this->addEdge(hole.ring[triangle[0]], hole.ring[triangle[2]], 1);
+    this->addEdge(hole.ring[triangle[0]], hole.ring[triangle[2]]);
   }
   if (hole.boundary && filling.count > 0)
   {
-    this->addEdge(hole.ring[0], hole.ring[hole.size - 1], 1);
+    this->addEdge(hole.ring[0], hole.ring[hole.size - 1]);
   }
 }
 

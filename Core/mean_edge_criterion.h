@@ -15,12 +15,9 @@
 #define UNDECIMATE_CORE_MEAN_EDGE_CRITERION_H
 
 #include "fold_rule.h"
-#include "large_array.h"
-#include "mesh_points.h"
 #include "triangle_topology.h"
 
 #include <cstdlib>
-#include <vector>
 
 namespace undecimate
 {
@@ -32,19 +29,21 @@ public:
   static constexpr bool kLazy = false;
 
   /// Scalar Difference by an array, or Angle to XY Plane without one. Nodes where the array is NaN
-  /// or infinite are `kept`; a difference to such a node counts as the whole range.
-  MeanEdgeCriterion(const TriangleTopology& topology, const MeshPoints& points,
-    const NodalArrayView* array, std::vector<unsigned char>& kept);
+  /// or infinite are kept from now on; a difference to such a node counts as the whole range.
+  /// @param topology with the positions of the nodes; their values and sums are ours from now on
+  MeanEdgeCriterion(TriangleTopology& topology, const NodalArrayView* array);
 
   /// Mean over the edges at a node, in [0, 1]. O(1).
   bool evaluate(Index node, double& cost) const
   {
-    const Node& n = this->nodes_[node];
-    cost = n.edges > 0 ? static_cast<double>(n.sum) / n.edges / kUnit : 0.0;
+    const std::uint64_t sum = this->topology_.node(node).sum;
+    const std::uint64_t edges = sum / kEdge;
+    cost = edges > 0
+      ? static_cast<double>(static_cast<std::int64_t>(sum % kEdge)) / static_cast<double>(
+            static_cast<std::int64_t>(edges)) * (1.0 / kUnit)
+      : 0.0;
     return true;
   }
-
-  void prefetch(Index node) const { __builtin_prefetch(&this->nodes_[node]); }
 
   /// Fill the hole of a node by ear cutting; false if that is not possible without flipping a
   /// triangle or making an edge or a triangle that exists.
@@ -57,32 +56,30 @@ private:
   static constexpr double kUnit = 1 << 30;
   static constexpr auto kWhole = static_cast<std::int64_t>(kUnit);
 
-  struct Node
-  {
-    std::int64_t sum = 0;
-    std::int32_t edges = 0;
-    std::int32_t value = 0; // of a scalar, in units of 2^-30 of its range; -1 = not finite
-  };
+  // MeshNode::value is the scalar in units of 2^-30 of its range, -1 if it is not finite.
+  // MeshNode::sum is the sum of the quantities and, above it, the number of the edges, which are
+  // added as one. More than 65535 edges overflow, but no such node can be removed, and the sum is
+  // right again when it has fewer.
+  static constexpr std::uint64_t kEdge = std::uint64_t{ 1 } << 47;
 
-  std::int64_t quantity(Index a, Index b) const
+  std::uint64_t edgeSum(const MeshNode& a, const MeshNode& b, Index indexA, Index indexB) const
   {
-    return this->scalar_ ? this->scalarDifference(this->nodes_[a].value, this->nodes_[b].value)
-                         : this->otherQuantity(a, b);
+    const std::int64_t quantity =
+      this->scalar_ ? scalarDifference(a.value, b.value) : this->otherQuantity(indexA, indexB);
+    return kEdge + static_cast<std::uint64_t>(quantity);
   }
   static std::int64_t scalarDifference(std::int32_t a, std::int32_t b)
   {
     return a < 0 || b < 0 ? kWhole : std::abs(a - b);
   }
   std::int64_t otherQuantity(Index a, Index b) const;
-  void addEdge(Index a, Index b, int sign);
+  void addEdge(Index a, Index b);
 
-  const TriangleTopology& topology_;
-  const MeshPoints& points_;
+  TriangleTopology& topology_;
   HeightFieldDirection heightField_;
   const NodalArrayView* array_;
   bool scalar_;
   double scale_ = 0.0; // of a vector array: 1 / range
-  LargeArray<Node, 2> nodes_;
 };
 
 } // namespace undecimate

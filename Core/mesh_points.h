@@ -7,10 +7,9 @@
 #ifndef UNDECIMATE_CORE_MESH_POINTS_H
 #define UNDECIMATE_CORE_MESH_POINTS_H
 
-#include "ear_cutting.h"
 #include "types.h"
+#include "vector.h"
 
-#include <cmath>
 #include <cstddef>
 
 namespace undecimate
@@ -33,19 +32,6 @@ public:
       return { this->doubles_[i], this->doubles_[i + 1], this->doubles_[i + 2] };
     }
     return { this->floats_[i], this->floats_[i + 1], this->floats_[i + 2] };
-  }
-
-  void prefetch(Index node) const
-  {
-    const std::size_t i = std::size_t{ 3 } * static_cast<std::size_t>(node);
-    __builtin_prefetch(this->doubles_ ? static_cast<const void*>(this->doubles_ + i)
-                                      : static_cast<const void*>(this->floats_ + i));
-  }
-
-  bool finite(Index node) const
-  {
-    const Vector p = (*this)[node];
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
   }
 
 private:

@@ -3,6 +3,7 @@
 
 #include "record.h"
 
+#include "compiler.h"
 #include "large_array.h"
 
 #include <algorithm>
@@ -156,7 +157,7 @@ int lostSourceCount(const unsigned char* shape, int corners)
   {
     heirs |= std::uint64_t{ 1 } << sources[i];
   }
-  return oldCount - __builtin_popcountll(heirs);
+  return oldCount - countBits(heirs);
 }
 
 Outcome checkSteps(const RecordView& record, const MonitorShare& progress)

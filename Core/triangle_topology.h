@@ -7,9 +7,12 @@
 #ifndef UNDECIMATE_CORE_TRIANGLE_TOPOLOGY_H
 #define UNDECIMATE_CORE_TRIANGLE_TOPOLOGY_H
 
+#include "compiler.h"
+#include "hash_queue.h"
 #include "large_array.h"
 #include "record.h"
 #include "types.h"
+#include "vector.h"
 
 #include <array>
 #include <vector>
@@ -78,11 +81,26 @@ enum class NodeKind : unsigned char
   Removed
 };
 
+/// All that is known about a node: one cache line, since the nodes are visited in an order that
+/// memory does not know. Besides the topology's own part there is room for those who work on it.
+struct alignas(64) MeshNode
+{
+  std::uint64_t neighbours = 0; ///< topology: see TriangleTopology::mayHaveEdge()
+  Corner corner = kNoCorner;    ///< topology: of one of its triangles
+  NodeKind kind = NodeKind::Unused;
+  bool kept = false;       ///< free for the user: is never removed
+  QueueLinks links;        ///< free for the user: its place in a hash queue
+  std::int32_t value = 0;  ///< free for the user
+  std::uint64_t sum = 0;   ///< free for the user
+  Vector position;         ///< free for the user; not initialized
+};
+static_assert(sizeof(MeshNode) == 64, "a cache line");
+
 /// Triangles with their neighbours across each edge (a corner table), and one corner for each node.
 ///
 /// Edges between manifold nodes have one or two triangles; an edge of more than two, or between
 /// misoriented triangles, is open for all of them and its nodes are NonManifold.
-/// Memory: 32 bytes a triangle and 16 bytes a node. Construction O(nodes + triangles).
+/// Memory: 32 bytes a triangle and 64 bytes a node. Construction O(nodes + triangles).
 class TriangleTopology
 {
 public:
@@ -97,9 +115,12 @@ public:
   /// @param triangles 3 * triangleCount node numbers in [0, nodeCount)
   TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount);
 
+  Index nodeCount() const { return static_cast<Index>(this->nodes_.size()); }
   Index triangleCount() const { return static_cast<Index>(this->triangles_.size()); }
   Triangle& triangle(Index t) { return this->triangles_[t]; }
   const Triangle& triangle(Index t) const { return this->triangles_[t]; }
+  MeshNode& node(Index n) { return this->nodes_[n]; }
+  const MeshNode& node(Index n) const { return this->nodes_[n]; }
   NodeKind kind(Index node) const { return this->nodes_[node].kind; }
 
   /// One fan, closed or open: only such nodes can be removed.
@@ -108,7 +129,7 @@ public:
   /// Bring the data around a node that will be gathered soon into the cache, in four stages that
   /// each use what the ones before have brought: the node, its triangle, the triangles beside that,
   /// and the nodes around it with the triangles behind them.
-  void prefetchNode(Index node) const { __builtin_prefetch(&this->nodes_[node]); }
+  void prefetchNode(Index node) const { prefetch(&this->nodes_[node]); }
   void prefetchTriangle(Index node) const { this->prefetchTriangleOf(this->nodes_[node].corner); }
   void prefetchNeighbours(Index node) const
   {
@@ -120,9 +141,7 @@ public:
       this->prefetchTriangleOf(t.across[previousCorner(cornerOf(corner))]);
     }
   }
-  /// @param visitNode void(Index), called for some or all nodes around, to prefetch more about them
-  template <typename VisitNode>
-  void prefetchRing(Index node, VisitNode&& visitNode) const
+  void prefetchRing(Index node) const
   {
     constexpr int kEnough = 8; // rings are rarely larger
     const Corner start = this->nodes_[node].corner;
@@ -131,9 +150,7 @@ public:
     {
       const Triangle& t = this->triangles_[triangleOf(corner)];
       const int c = cornerOf(corner);
-      const Index around = t.nodes[nextCorner(c)];
-      this->prefetchNode(around);
-      visitNode(around);
+      this->prefetchNode(t.nodes[nextCorner(c)]);
       this->prefetchTriangleOf(t.across[c]);
       const Corner opposite = t.across[nextCorner(c)];
       corner = opposite == kNoCorner
@@ -182,18 +199,11 @@ private:
     this->nodes_[b].neighbours |= signature(a);
   }
 
-  struct Node
-  {
-    std::uint64_t neighbours = 0;
-    Corner corner = kNoCorner; // of one of its triangles
-    NodeKind kind = NodeKind::Unused;
-  };
-
   void prefetchTriangleOf(Corner corner) const
   {
     if (corner != kNoCorner)
     {
-      __builtin_prefetch(&this->triangles_[triangleOf(corner)]);
+      prefetch(&this->triangles_[triangleOf(corner)]);
     }
   }
   bool findEdge(Index a, Index b) const;
@@ -204,7 +214,7 @@ private:
   void markNodes();
 
   LargeArray<Triangle> triangles_;
-  LargeArray<Node, 1> nodes_;
+  LargeArray<MeshNode, 1> nodes_;
 };
 
 } // namespace undecimate

@@ -3,6 +3,8 @@
 
 #include "undecimation.h"
 
+#include "compiler.h"
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -301,7 +303,7 @@ void Undecimation::coarsen()
       heirs |= std::uint64_t{ 1 } << shape.sources[i];
       this->sources_[slots[i]] = old[shape.sources[i]];
     }
-    this->lostPosition_ -= shape.oldCount - __builtin_popcountll(heirs);
+    this->lostPosition_ -= shape.oldCount - countBits(heirs);
   }
 }
 
