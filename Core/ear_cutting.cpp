@@ -57,11 +57,9 @@ void EarCutting::findEars()
   }
   for (int i = 0; i < this->size_; ++i)
   {
-    if (!(this->quality_[i] > this->flat_ &&
-          this->isEmpty(this->previous_[i], i, this->next_[i])))
-    {
-      this->quality_[i] = kNotAnEar;
-    }
+    const bool ear = this->quality_[i] > this->flat_ &&
+      (this->reflexCount_ == 0 || this->isEmpty(this->previous_[i], i, this->next_[i]));
+    this->quality_[i] = ear ? this->quality_[i] : kNotAnEar;
   }
 }
 

@@ -23,81 +23,66 @@ TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, 
   this->markNodes();
 }
 
-// Find the triangles on either side of each edge. The corners are bucketed by the smaller node of
-// the opposite edge, so that each bucket is a handful of edges.
+// Find the triangles on either side of each edge. Of each edge the first corner opposite to it is
+// listed at the edge's smaller node: three corners at a node on the average.
 void TriangleTopology::connect()
 {
   const Index triangleCount = static_cast<Index>(this->triangles_.size());
-  const std::size_t nodeCount = this->nodes_.size();
-  LargeArray<Index> begin(nodeCount + 1, 0);
-  const auto smaller = [](const Triangle& t, int c)
-  { return std::min(t.nodes[nextCorner(c)], t.nodes[previousCorner(c)]); };
-  for (const Triangle& t : this->triangles_)
+  LargeArray<Corner> first(this->nodes_.size(), kNoCorner);
+  LargeArray<Corner, 2> next(std::size_t{ 4 } * triangleCount); // by corner
+  bool anyBad = false; // edges that stay open: their bits in Triangle::spare
+  for (Index i = 0; i < triangleCount; ++i)
   {
+    Triangle& t = this->triangles_[i];
     for (int c = 0; c < 3; ++c)
     {
-      ++begin[smaller(t, c) + 1];
+      const Index from = t.nodes[nextCorner(c)];
+      const Index to = t.nodes[previousCorner(c)];
+      const Index smaller = std::min(from, to);
+      const Corner here = makeCorner(i, c);
+      Corner there = first[smaller];
+      Index thereFrom = kNone;
+      for (; there != kNoCorner; there = next[there])
+      {
+        const Triangle& o = this->triangles_[triangleOf(there)];
+        thereFrom = o.nodes[nextCorner(cornerOf(there))];
+        const Index thereTo = o.nodes[previousCorner(cornerOf(there))];
+        if ((thereFrom == to && thereTo == from) || (thereFrom == from && thereTo == to))
+        {
+          break;
+        }
+      }
+      if (there == kNoCorner)
+      {
+        next[here] = first[smaller];
+        first[smaller] = here;
+        this->meet(from, to);
+        continue;
+      }
+      Triangle& o = this->triangles_[triangleOf(there)];
+      Corner& across = o.across[cornerOf(there)];
+      const int bad = 1 << cornerOf(there);
+      if (across == kNoCorner && (o.spare & bad) == 0 && thereFrom != from)
+      {
+        across = here;
+        t.across[c] = there;
+        continue;
+      }
+      // The third triangle of an edge, or the second that runs along it in the same direction.
+      if (across != kNoCorner)
+      {
+        this->triangles_[triangleOf(across)].across[cornerOf(across)] = kNoCorner;
+        across = kNoCorner;
+      }
+      o.spare |= bad;
+      anyBad = true;
+      this->nodes_[from].kind = NodeKind::NonManifold;
+      this->nodes_[to].kind = NodeKind::NonManifold;
     }
   }
-  for (std::size_t i = 0; i < nodeCount; ++i)
+  for (Index i = 0; anyBad && i < triangleCount; ++i)
   {
-    begin[i + 1] += begin[i];
-  }
-  struct Edge
-  {
-    Index larger;
-    Corner corner;
-  };
-  LargeArray<Edge> edges(std::size_t{ 3 } * triangleCount);
-  {
-    LargeArray<Index> fill(begin.begin(), begin.end() - 1);
-    for (Index i = 0; i < triangleCount; ++i)
-    {
-      const Triangle& t = this->triangles_[i];
-      for (int c = 0; c < 3; ++c)
-      {
-        const Index a = t.nodes[nextCorner(c)];
-        const Index b = t.nodes[previousCorner(c)];
-        edges[fill[std::min(a, b)]++] = { std::max(a, b), makeCorner(i, c) };
-      }
-    }
-  }
-  for (std::size_t node = 0; node < nodeCount; ++node)
-  {
-    const auto first = edges.begin() + begin[node];
-    const auto last = edges.begin() + begin[node + 1];
-    // A stable order keeps the result independent of the standard library.
-    std::sort(first, last,
-      [](const Edge& a, const Edge& b)
-      { return a.larger != b.larger ? a.larger < b.larger : a.corner < b.corner; });
-    for (auto edge = first; edge != last;)
-    {
-      auto end = edge + 1;
-      while (end != last && end->larger == edge->larger)
-      {
-        ++end;
-      }
-      const auto count = end - edge;
-      this->meet(static_cast<Index>(node), edge->larger);
-      const auto startOf = [this](Corner corner)
-      {
-        const Triangle& t = this->triangles_[triangleOf(corner)];
-        return t.nodes[nextCorner(cornerOf(corner))];
-      };
-      if (count == 2 && startOf(edge[0].corner) != startOf(edge[1].corner))
-      {
-        this->triangles_[triangleOf(edge[0].corner)].across[cornerOf(edge[0].corner)] =
-          edge[1].corner;
-        this->triangles_[triangleOf(edge[1].corner)].across[cornerOf(edge[1].corner)] =
-          edge[0].corner;
-      }
-      else if (count >= 2)
-      {
-        this->nodes_[node].kind = NodeKind::NonManifold;
-        this->nodes_[edge->larger].kind = NodeKind::NonManifold;
-      }
-      edge = end;
-    }
+    this->triangles_[i].spare = 0;
   }
 }
 
