@@ -76,13 +76,15 @@ TEST(ArrayRange, NineComponents)
   EXPECT_DOUBLE_EQ(arrayRange(viewOf(values, 9), 2).size, 3.0);
 }
 
-TEST(KeepNonFinite, FlagsNodesWithAnyNonFiniteComponentAndKeepsOthers)
+TEST(IsFinite, NeedsAllComponents)
 {
   const std::vector<float> values{ 0.0F, 1.0F, /**/ kNaN, 1.0F, /**/ 2.0F, -kInfinity, /**/ 0.0F,
     0.0F };
-  std::vector<unsigned char> kept{ 0, 0, 0, 1 };
-  keepNonFinite(viewOf(values, 2), kept);
-  EXPECT_EQ(kept, (std::vector<unsigned char>{ 0, 1, 1, 1 }));
+  const bool expected[] = { true, false, false, true };
+  for (Index node = 0; node < 4; ++node)
+  {
+    EXPECT_EQ(isFinite(viewOf(values, 2), node), expected[node]) << node;
+  }
 }
 
 } // namespace

@@ -70,8 +70,8 @@ double sharedArea(const Corners& subject, const Corners& window)
 
 } // namespace
 
-void findCellSources(const TriangleTopology& topology, const Hole& hole, const HoleTriangulation& filling,
-  unsigned char* sources)
+void findCellSources(const TriangleTopology& topology, const Hole& hole,
+  const HoleTriangulation& filling, unsigned char* sources)
 {
   std::array<Vector, kMaximumPatchCells + 1> ring;
   const Vector center = topology.node(hole.node).position;

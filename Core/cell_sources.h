@@ -16,8 +16,8 @@ namespace undecimate
 /// largest area, seen along the mean normal of the old ones; the first of equals.
 /// @param[out] sources filling.count entries
 /// Complexity: O(old * new).
-void findCellSources(const TriangleTopology& topology, const Hole& hole, const HoleTriangulation& filling,
-  unsigned char* sources);
+void findCellSources(const TriangleTopology& topology, const Hole& hole,
+  const HoleTriangulation& filling, unsigned char* sources);
 
 } // namespace undecimate
 

@@ -43,8 +43,7 @@ struct Fan
     std::copy(triangles.begin(), triangles.end(), filling.triangles.begin());
     std::array<unsigned char, kMaximumPatchCells> found;
     found.fill(255);
-    const TriangleMeshView view = mesh.view();
-    findCellSources(MeshPoints(view), hole, filling, found.data());
+    findCellSources(TriangleTopology(mesh.view()), hole, filling, found.data());
     return { found.begin(), found.begin() + filling.count };
   }
 };

@@ -85,7 +85,8 @@ private:
 class HeightFieldDirection
 {
 public:
-  /// Looks at all triangles that have an area, by the nodes' positions; most other meshes are told by their first few.
+  /// Looks at all triangles that have an area, by the nodes' positions; most other meshes are told
+  /// by their first few.
   explicit HeightFieldDirection(const TriangleTopology& topology)
   {
     bool facing[6] = { true, true, true, true, true, true };
@@ -94,8 +95,8 @@ public:
     {
       const auto& nodes = topology.triangle(t).nodes;
       const Vector& a = topology.node(nodes[0]).position;
-      const Vector n = cross(
-        topology.node(nodes[1]).position - a, topology.node(nodes[2]).position - a);
+      const Vector n =
+        cross(topology.node(nodes[1]).position - a, topology.node(nodes[2]).position - a);
       if (!(dot(n, n) > 0.0))
       {
         continue;

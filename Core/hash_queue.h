@@ -63,8 +63,8 @@ private:
   Index count_;
 };
 
-/// A bit for each interval that is not empty, and a bit for each word of bits that is not zero: four
-/// levels find the lowest interval in four steps.
+/// A bit for each interval that is not empty, and a bit for each word of bits that is not zero:
+/// four levels find the lowest interval in four steps.
 class IntervalBits
 {
 public:
@@ -169,10 +169,7 @@ public:
   Index lowestInterval() const { return this->size_ == 0 ? kNone : this->bits_.lowest(); }
 
   /// First node of the lowest non-empty interval, kNone if empty; it stays in.
-  Index front() const
-  {
-    return this->size_ == 0 ? kNone : this->ends_[this->bits_.lowest()].first;
-  }
+  Index front() const { return this->size_ == 0 ? kNone : this->ends_[this->bits_.lowest()].first; }
 
   /// The node behind another one in its interval, kNone if it is the last.
   Index after(Index node) const { return this->linksOf_(node).next; }

@@ -6,7 +6,6 @@
 #include "cell_sources.h"
 #include "deviation.h"
 #include "mean_edge_criterion.h"
-#include "mesh_points.h"
 #include "triangle_topology.h"
 
 #include <algorithm>
@@ -431,15 +430,13 @@ Outcome checkMesh(const TriangleMeshView& mesh)
   return {};
 }
 
-/// Give the nodes their positions, and flag and count those that are never candidates.
-void prepareNodes(const TriangleMeshView& mesh, bool preserveBoundary, TriangleTopology& topology,
+/// Flag and count the nodes that are never candidates.
+void flagKeptNodes(const TriangleMeshView& mesh, bool preserveBoundary, TriangleTopology& topology,
   HashQueueDecimationResult& result)
 {
-  const MeshPoints points(mesh);
   for (Index i = 0; i < topology.nodeCount(); ++i)
   {
     MeshNode& node = topology.node(i);
-    node.position = points[i];
     Index* counter = nullptr;
     if (mesh.keep && mesh.keep[i])
     {
@@ -476,9 +473,8 @@ void prepareNodes(const TriangleMeshView& mesh, bool preserveBoundary, TriangleT
 Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
   Monitor& monitor, HashQueueDecimationResult& result)
 {
-  TriangleTopology topology(
-    mesh.triangles, static_cast<Index>(mesh.triangleCount), static_cast<Index>(mesh.nodeCount));
-  prepareNodes(mesh, options.preserveBoundary, topology, result);
+  TriangleTopology topology(mesh);
+  flagKeptNodes(mesh, options.preserveBoundary, topology, result);
   const Goal goal(mesh, options);
   const auto decimateBy = [&](auto&& criterion)
   {

@@ -38,10 +38,9 @@ public:
   {
     const std::uint64_t sum = this->topology_.node(node).sum;
     const std::uint64_t edges = sum / kEdge;
-    cost = edges > 0
-      ? static_cast<double>(static_cast<std::int64_t>(sum % kEdge)) / static_cast<double>(
-            static_cast<std::int64_t>(edges)) * (1.0 / kUnit)
-      : 0.0;
+    cost = edges > 0 ? static_cast<double>(static_cast<std::int64_t>(sum % kEdge)) /
+        static_cast<double>(static_cast<std::int64_t>(edges)) * (1.0 / kUnit)
+                     : 0.0;
     return true;
   }
 

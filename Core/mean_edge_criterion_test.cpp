@@ -84,11 +84,8 @@ TEST_F(FiveNodes, ScalarDifferenceByHand)
 {
   const std::vector<float> values{ 0.0F, 2.0F, 10.0F, 0.0F, 4.0F };
   const NodalArrayView array = viewOf(values);
-  const TriangleMeshView view = mesh.view();
-  const MeshPoints points(view);
-  const TriangleTopology topology(mesh.triangles.data(), 4, 5);
-  std::vector<unsigned char> kept(5, 0);
-  const MeanEdgeCriterion criterion(topology, points, &array, kept);
+  TriangleTopology topology(mesh.view());
+  const MeanEdgeCriterion criterion(topology, &array);
   const double expected[] = { 0.2, 0.4, 0.8, 14.0 / 30.0, 0.4 };
   for (Index node = 0; node < 5; ++node)
   {
@@ -101,11 +98,8 @@ TEST_F(FiveNodes, ScalarDifferenceByHand)
 // [K03] 1.1, first criterion: the spokes rise 1 over sqrt(2), 35.26 degrees; the sides are flat.
 TEST_F(FiveNodes, AngleToXYPlaneByHand)
 {
-  const TriangleMeshView view = mesh.view();
-  const MeshPoints points(view);
-  const TriangleTopology topology(mesh.triangles.data(), 4, 5);
-  std::vector<unsigned char> kept(5, 0);
-  const MeanEdgeCriterion criterion(topology, points, nullptr, kept);
+  TriangleTopology topology(mesh.view());
+  const MeanEdgeCriterion criterion(topology, nullptr);
   const double spoke = std::atan(1.0 / std::sqrt(2.0)) / std::acos(0.0);
   double cost = -1.0;
   ASSERT_TRUE(criterion.evaluate(4, cost));
@@ -197,11 +191,8 @@ TEST(MeanEdgeCriterion, VectorsCompareByTheNormOfTheDifference)
   // diagonal sqrt(9 + 16 + 144) = 13.
   const std::vector<float> values{ 0, 0, 0, /**/ 3, 4, 0, /**/ 0, 0, 12 };
   const NodalArrayView array = viewOf(values, 3);
-  const TriangleMeshView view = mesh.view();
-  const MeshPoints points(view);
-  const TriangleTopology topology(mesh.triangles.data(), 1, 3);
-  std::vector<unsigned char> kept(3, 0);
-  const MeanEdgeCriterion criterion(topology, points, &array, kept);
+  TriangleTopology topology(mesh.view());
+  const MeanEdgeCriterion criterion(topology, &array);
   double cost = 0.0;
   criterion.evaluate(0, cost);
   EXPECT_NEAR(cost, (5.0 + 12.0) / 2.0 / 13.0, 1e-8);
@@ -215,12 +206,12 @@ TEST_F(FiveNodes, NonFiniteValuesAreKeptAndCountAsTheWholeRange)
   {
     const std::vector<float> values{ 0.0F, 2.0F, odd, 0.0F, 4.0F };
     const NodalArrayView array = viewOf(values);
-    const TriangleMeshView view = mesh.view();
-    const MeshPoints points(view);
-    const TriangleTopology topology(mesh.triangles.data(), 4, 5);
-    std::vector<unsigned char> kept(5, 0);
-    const MeanEdgeCriterion criterion(topology, points, &array, kept);
-    EXPECT_EQ(kept, (std::vector<unsigned char>{ 0, 0, 1, 0, 0 }));
+    TriangleTopology topology(mesh.view());
+    const MeanEdgeCriterion criterion(topology, &array);
+    for (Index node = 0; node < 5; ++node)
+    {
+      EXPECT_EQ(topology.node(node).kept, node == 2) << node;
+    }
     double cost = 0.0;
     criterion.evaluate(1, cost); // range 4: 2 / 4, whole, 2 / 4
     EXPECT_NEAR(cost, 2.0 / 3.0, 1e-8);
@@ -231,11 +222,8 @@ TEST_F(FiveNodes, ConstantArraysCostNothing)
 {
   const std::vector<float> values(5, 3.5F);
   const NodalArrayView array = viewOf(values);
-  const TriangleMeshView view = mesh.view();
-  const MeshPoints points(view);
-  const TriangleTopology topology(mesh.triangles.data(), 4, 5);
-  std::vector<unsigned char> kept(5, 0);
-  const MeanEdgeCriterion criterion(topology, points, &array, kept);
+  TriangleTopology topology(mesh.view());
+  const MeanEdgeCriterion criterion(topology, &array);
   for (Index node = 0; node < 5; ++node)
   {
     double cost = -1.0;
@@ -257,11 +245,8 @@ TEST(MeanEdgeCriterion, FoldedHolesAreRefused)
   mesh.addTriangle(0, 2, 3);
   mesh.addTriangle(0, 3, 4);
   mesh.addTriangle(0, 4, 1);
-  const TriangleMeshView view = mesh.view();
-  const MeshPoints points(view);
-  const TriangleTopology topology(mesh.triangles.data(), 4, 5);
-  std::vector<unsigned char> kept(5, 0);
-  MeanEdgeCriterion criterion(topology, points, nullptr, kept);
+  TriangleTopology topology(mesh.view());
+  MeanEdgeCriterion criterion(topology, nullptr);
   Hole hole;
   HoleTriangulation filling;
   double cost = 0.0;

@@ -23,6 +23,21 @@ TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, 
   this->markNodes();
 }
 
+TriangleTopology::TriangleTopology(const TriangleMeshView& mesh)
+  : TriangleTopology(
+      mesh.triangles, static_cast<Index>(mesh.triangleCount), static_cast<Index>(mesh.nodeCount))
+{
+  const auto place = [this](const auto* coordinates)
+  {
+    for (MeshNode& node : this->nodes_)
+    {
+      node.position = { coordinates[0], coordinates[1], coordinates[2] };
+      coordinates += 3;
+    }
+  };
+  mesh.pointsDouble ? place(mesh.pointsDouble) : place(mesh.pointsFloat);
+}
+
 // Find the triangles on either side of each edge. Of each edge the first corner opposite to it is
 // listed at the edge's smaller node: three corners at a node on the average.
 void TriangleTopology::connect()

@@ -88,11 +88,11 @@ struct alignas(64) MeshNode
   std::uint64_t neighbours = 0; ///< topology: see TriangleTopology::mayHaveEdge()
   Corner corner = kNoCorner;    ///< topology: of one of its triangles
   NodeKind kind = NodeKind::Unused;
-  bool kept = false;       ///< free for the user: is never removed
-  QueueLinks links;        ///< free for the user: its place in a hash queue
-  std::int32_t value = 0;  ///< free for the user
-  std::uint64_t sum = 0;   ///< free for the user
-  Vector position;         ///< free for the user; not initialized
+  bool kept = false;      ///< free for the user: is never removed
+  QueueLinks links;       ///< free for the user: its place in a hash queue
+  std::int32_t value = 0; ///< free for the user
+  std::uint64_t sum = 0;  ///< free for the user
+  Vector position;        ///< undefined if the topology was made without positions
 };
 static_assert(sizeof(MeshNode) == 64, "a cache line");
 
@@ -114,6 +114,9 @@ public:
 
   /// @param triangles 3 * triangleCount node numbers in [0, nodeCount)
   TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount);
+
+  /// With the positions of the nodes. The mesh must be valid (triangles as above).
+  explicit TriangleTopology(const TriangleMeshView& mesh);
 
   Index nodeCount() const { return static_cast<Index>(this->nodes_.size()); }
   Index triangleCount() const { return static_cast<Index>(this->triangles_.size()); }

@@ -363,7 +363,7 @@ TEST(TriangleTopology, ReplaceKeepsNeighbours)
   };
   HoleTriangulation filling;
   filling.count = 2;
-  filling.triangles[0] = { at(0), at(1), at(3) };
+  filling.triangles[0] = { at(3), at(0), at(1) };
   filling.triangles[1] = { at(1), at(2), at(3) };
   EXPECT_FALSE(topology.mayHaveEdge(1, 3));
   topology.replace(hole, filling);
