@@ -12,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -31,41 +30,45 @@ class Intervals
 {
 public:
   Intervals(const HashQueueDecimationOptions& options, const std::vector<float>& costs)
+    : logarithmic_(options.intervalSpacing == IntervalSpacing::Logarithmic)
+    , exponential_(0.0, 0.0, 1)
   {
-    if (options.intervalSpacing == IntervalSpacing::Exponential)
+    if (this->logarithmic_)
     {
-      float smallest = std::numeric_limits<float>::max();
-      float largest = 0.0F;
-      std::int64_t queued = 0;
-      for (const float cost : costs)
-      {
-        if (cost >= 0.0F)
-        {
-          smallest = std::min(smallest, cost);
-          largest = std::max(largest, cost);
-          ++queued;
-        }
-      }
-      // [K03] eq. 1: m = floor(n / k).
-      const double count = std::floor(static_cast<double>(queued) / options.intervalNodes);
-      this->exponential_ = std::make_unique<ExponentialIntervals>(std::min(smallest, largest),
-        largest, static_cast<Index>(std::clamp(count, 1.0, static_cast<double>(1 << 24))));
+      return;
     }
+    float smallest = std::numeric_limits<float>::max();
+    float largest = 0.0F;
+    std::int64_t queued = 0;
+    for (const float cost : costs)
+    {
+      if (cost >= 0.0F)
+      {
+        smallest = std::min(smallest, cost);
+        largest = std::max(largest, cost);
+        ++queued;
+      }
+    }
+    // [K03] eq. 1: m = floor(n / k).
+    const double count = std::floor(static_cast<double>(queued) / options.intervalNodes);
+    this->exponential_ = ExponentialIntervals(std::min(smallest, largest), largest,
+      static_cast<Index>(std::clamp(count, 1.0, static_cast<double>(1 << 24))));
   }
 
   Index count() const
   {
-    return this->exponential_ ? this->exponential_->count() : kLogarithmicIntervals;
+    return this->logarithmic_ ? kLogarithmicIntervals : this->exponential_.count();
   }
 
   Index of(double cost) const
   {
-    return this->exponential_ ? this->exponential_->interval(cost)
-                              : logarithmicInterval(static_cast<float>(cost));
+    return this->logarithmic_ ? logarithmicInterval(static_cast<float>(cost))
+                              : this->exponential_.interval(cost);
   }
 
 private:
-  std::unique_ptr<ExponentialIntervals> exponential_;
+  bool logarithmic_;
+  ExponentialIntervals exponential_;
 };
 
 /// Where to stop, in triangles and nodes that are left.
@@ -277,12 +280,10 @@ private:
       cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
       cell[previousCorner(corner)] = static_cast<unsigned char>(i + 1 == hole.size ? 1 : i + 2);
     }
-    for (int i = 0; i < filling.count; ++i)
+    const unsigned char* filled = filling.triangles.front().data();
+    for (int i = 0; i < 3 * filling.count; ++i)
     {
-      for (int c = 0; c < 3; ++c)
-      {
-        this->newCells_[3 * i + c] = static_cast<unsigned char>(filling.triangles[i][c] + 1);
-      }
+      this->newCells_[i] = static_cast<unsigned char>(filled[i] + 1);
     }
     if (this->options_.trackCellSources)
     {

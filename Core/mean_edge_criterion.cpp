@@ -26,12 +26,16 @@ MeanEdgeCriterion::MeanEdgeCriterion(TriangleTopology& topology, const NodalArra
     for (Index i = 0; i < nodeCount; ++i)
     {
       MeshNode& node = topology.node(i);
-      node.kept = node.kept || !isFinite(*array, i);
       if (this->scalar_)
       {
         const double value = (array->values[i] - range.lowest[0]) * this->scale_;
         node.value =
-          std::isfinite(value) ? static_cast<std::int32_t>(std::lround(value * kUnit)) : -1;
+          std::isfinite(value) ? static_cast<std::int32_t>(value * kUnit + 0.5) : -1;
+        node.kept = node.kept || node.value < 0;
+      }
+      else if (!isFinite(*array, i))
+      {
+        node.kept = true;
       }
     }
   }

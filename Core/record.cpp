@@ -532,20 +532,29 @@ void RecordBuilder::append(const Step& step)
   unsigned char* newLocals = oldLocals + kCorners * step.oldCount;
   for (int i = 0; i < kCorners * step.newCount; ++i)
   {
-    unsigned char& number = local[step.newCells[i]];
-    number = number != 0 ? number : ++locals;
-    newLocals[i] = number;
+    const int position = step.newCells[i];
+    const bool known = local[position] != 0;
+    locals = static_cast<unsigned char>(locals + (known ? 0 : 1));
+    local[position] = known ? local[position] : locals;
+    newLocals[i] = local[position];
   }
+  // Most often all nodes of the ring are known by now.
   int extra = 0;
+  if (locals < step.ringSize)
+  {
+    for (int i = 0; i < kCorners * step.oldCount; ++i)
+    {
+      const int position = step.oldCells[i];
+      if (position != 0 && local[position] == 0)
+      {
+        local[position] = ++locals;
+        extraNodes[extra++] = step.ring[position - 1];
+      }
+    }
+  }
   for (int i = 0; i < kCorners * step.oldCount; ++i)
   {
-    const int position = step.oldCells[i];
-    if (position != 0 && local[position] == 0)
-    {
-      local[position] = ++locals;
-      extraNodes[extra++] = step.ring[position - 1];
-    }
-    oldLocals[i] = local[position]; // that of the removed node stays 0
+    oldLocals[i] = local[step.oldCells[i]]; // that of the removed node stays 0
   }
   shape[0] = static_cast<unsigned char>(step.oldCount);
   shape[1] = static_cast<unsigned char>(step.newCount);
