@@ -36,10 +36,15 @@ EarCutting::EarCutting(const Vector* ring, int size, const Vector& normal)
   for (int i = 0; i < size; ++i)
   {
     const double depth = ring[i].*z;
-    this->points_[i] = { ring[i].*x - slopeX * depth, ring[i].*y - slopeY * depth };
+    this->x_[i + 1] = ring[i].*x - slopeX * depth;
+    this->y_[i + 1] = ring[i].*y - slopeY * depth;
     this->previous_[i] = static_cast<unsigned char>(i == 0 ? size - 1 : i - 1);
     this->next_[i] = static_cast<unsigned char>(i == size - 1 ? 0 : i + 1);
   }
+  this->x_[0] = this->x_[size];
+  this->y_[0] = this->y_[size];
+  this->x_[size + 1] = this->x_[1];
+  this->y_[size + 1] = this->y_[1];
   const double square = 1.0 + slopeX * slopeX + slopeY * slopeY;
   this->xx_ = square - slopeX * slopeX;
   this->xy_ = -2.0 * slopeX * slopeY;
@@ -49,9 +54,15 @@ EarCutting::EarCutting(const Vector* ring, int size, const Vector& normal)
 
 void EarCutting::findEars()
 {
+  const double* x = this->x_.data();
+  const double* y = this->y_.data();
   for (int i = 0; i < this->size_; ++i)
   {
-    this->quality_[i] = this->height(this->previous_[i], i, this->next_[i]);
+    this->quality_[i] =
+      this->height({ x[i], y[i] }, { x[i + 1], y[i + 1] }, { x[i + 2], y[i + 2] });
+  }
+  for (int i = 0; i < this->size_; ++i)
+  {
     this->reflex_[this->reflexCount_] = static_cast<unsigned char>(i);
     this->reflexCount_ += this->quality_[i] > 0.0 ? 0 : 1;
   }

@@ -35,16 +35,14 @@ public:
   /// so that the plane shows a hole around the origin as it is.
   bool seesFan(int count) const
   {
+    const double* x = this->x_.data() + 1;
+    const double* y = this->y_.data() + 1;
+    int up = 0;
     for (int i = 0; i < count; ++i)
     {
-      const Point& a = this->points_[i];
-      const Point& b = this->points_[i + 1 == this->size_ ? 0 : i + 1];
-      if (!(a.x * b.y - a.y * b.x > 0.0))
-      {
-        return false;
-      }
+      up += x[i] * y[i + 1] - y[i] * x[i + 1] > 0.0 ? 1 : 0;
     }
-    return true;
+    return up == count;
   }
 
   /// Cut the polygon into size - 2 triangles. Once only.
@@ -108,6 +106,8 @@ private:
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   }
 
+  Point point(int i) const { return { this->x_[i + 1], this->y_[i + 1] }; }
+
   static void emit(int previous, int ear, int next, HoleTriangulation& filling)
   {
     filling.triangles[filling.count++] = { static_cast<unsigned char>(previous),
@@ -119,12 +119,16 @@ private:
   // and the less the angle it cuts off.
   double height(int previous, int i, int next) const
   {
-    const Point& a = this->points_[previous];
-    const Point& c = this->points_[next];
+    return this->height(this->point(previous), this->point(i), this->point(next));
+  }
+
+  double height(const Point& a, const Point& b, const Point& c) const
+  {
     const double x = c.x - a.x;
     const double y = c.y - a.y;
     const double base = (this->xx_ * x + this->xy_ * y) * x + this->yy_ * y * y;
-    return base > 0.0 ? orientation(a, this->points_[i], c) / base : 0.0;
+    const double height = orientation(a, b, c) / base;
+    return base > 0.0 ? height : 0.0;
   }
 
   void evaluate(int i)
@@ -140,13 +144,13 @@ private:
   // corner that was cut lies outside what is left.
   bool isEmpty(int previous, int i, int next) const
   {
-    const Point& a = this->points_[previous];
-    const Point& b = this->points_[i];
-    const Point& c = this->points_[next];
+    const Point a = this->point(previous);
+    const Point b = this->point(i);
+    const Point c = this->point(next);
     for (int k = 0; k < this->reflexCount_; ++k)
     {
       const int corner = this->reflex_[k];
-      const Point& p = this->points_[corner];
+      const Point p = this->point(corner);
       if (corner != previous && corner != i && corner != next && orientation(a, b, p) >= 0.0 &&
         orientation(b, c, p) >= 0.0 && orientation(c, a, p) >= 0.0)
       {
@@ -171,7 +175,9 @@ private:
 
   void findEars();
 
-  std::array<Point, kCapacity> points_;
+  // Corner i is at i + 1; the last one stands before the first, and the first behind the last.
+  std::array<double, kCapacity + 2> x_;
+  std::array<double, kCapacity + 2> y_;
   std::array<double, kCapacity> quality_;
   std::array<unsigned char, kCapacity> previous_;
   std::array<unsigned char, kCapacity> next_;
