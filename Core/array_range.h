@@ -22,6 +22,31 @@ struct ArrayRange
 
 ArrayRange arrayRange(const NodalArrayView& array, Index nodeCount);
 
+/// Position of the first number outside [0, limit), or `count`. O(count).
+template <typename Number>
+std::int64_t findOutside(const Number* numbers, std::int64_t count, std::int64_t limit)
+{
+  // In blocks without a branch inside, for there is hardly ever one.
+  constexpr std::int64_t kBlock = 1024;
+  for (std::int64_t begin = 0; begin < count; begin += kBlock)
+  {
+    const std::int64_t end = begin + kBlock < count ? begin + kBlock : count;
+    bool outside = false;
+    for (std::int64_t i = begin; i < end; ++i)
+    {
+      outside |= numbers[i] < 0 || numbers[i] >= limit;
+    }
+    for (std::int64_t i = begin; outside && i < end; ++i)
+    {
+      if (numbers[i] < 0 || numbers[i] >= limit)
+      {
+        return i;
+      }
+    }
+  }
+  return count;
+}
+
 /// Whether all components of a node's value are finite.
 bool isFinite(const NodalArrayView& array, Index node);
 

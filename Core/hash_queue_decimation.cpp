@@ -3,6 +3,7 @@
 
 #include "hash_queue_decimation.h"
 
+#include "array_range.h"
 #include "cell_sources.h"
 #include "deviation.h"
 #include "mean_edge_criterion.h"
@@ -119,8 +120,11 @@ public:
 
   Status run(HashQueueDecimationResult& result)
   {
-    RecordBuilder builder(
-      this->nodeCount_, this->topology_.triangleCount(), this->options_.trackCellSources);
+    // A removal takes two triangles, or one at the boundary.
+    const Index planned = std::max<Index>(1, this->trianglesLeft_ - this->goal_.triangles);
+    RecordBuilder builder(this->nodeCount_, this->trianglesLeft_, this->options_.trackCellSources,
+      std::min(
+        this->nodesLeft_ - std::max<Index>(0, this->goal_.nodes), planned / 2 + kBoundarySteps));
     // Step 1: evaluate all nodes and arrange them in the hash table.
     std::vector<float> costs;
     if (!this->evaluateAll(costs))
@@ -136,11 +140,10 @@ public:
         queue.insert(node, intervals.of(costs[node]));
       }
     }
-    costs = {};
+    release(costs);
 
     result.stopReason = StopReason::NoRemovableNode;
     bool tooCostly = false;
-    const Index planned = std::max<Index>(1, this->trianglesLeft_ - this->goal_.triangles);
     for (std::uint64_t turn = 0; !this->atGoal(result.stopReason); ++turn)
     {
       if ((turn & 255) == 0 && !this->reportProgress(planned))
@@ -183,7 +186,14 @@ public:
       // Step 7: back to step 2.
     }
     result.error = builder.error();
-    result.record = builder.finish(this->topology_.cells().data(), result.baseTriangles);
+    this->topology_.freeNodes();
+    result.record = builder.finish(
+      [this](Index triangle, Index* corners)
+      {
+        const auto& nodes = this->topology_.triangle(triangle).nodes;
+        std::copy(nodes.begin(), nodes.end(), corners);
+      },
+      result.baseTriangles);
     return this->monitor_.update(1.0) ? Status::Ok : Status::Cancelled;
   }
 
@@ -194,6 +204,9 @@ private:
     QueueLinks& operator()(Index node) const { return this->topology->node(node).links; }
   };
   using Queue = HashQueueOn<NodeLinks>;
+
+  // Steps at the boundary for which the record sets room aside; it grows if there are more.
+  static constexpr Index kBoundarySteps = 1000;
 
   // Share of the progress that the first evaluation gets.
   static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
@@ -413,20 +426,21 @@ Outcome checkMesh(const TriangleMeshView& mesh)
     return { Status::InvalidArgument, "The mesh has a negative number of nodes or triangles." };
   }
   if ((mesh.nodeCount > 0 && (mesh.pointsFloat != nullptr) == (mesh.pointsDouble != nullptr)) ||
-    (mesh.triangleCount > 0 && !mesh.triangles))
+    (mesh.triangleCount > 0 && (mesh.triangles != nullptr) == (mesh.wideTriangles != nullptr)))
   {
     return { Status::InvalidArgument,
-      "The mesh needs its triangles and exactly one of its two point arrays." };
+      "The mesh needs exactly one of its two triangle arrays and one of its two point arrays." };
   }
-  for (std::int64_t i = 0; i < 3 * mesh.triangleCount; ++i)
+  const std::int64_t corners = 3 * mesh.triangleCount;
+  const std::int64_t bad = mesh.wideTriangles
+    ? findOutside(mesh.wideTriangles, corners, mesh.nodeCount)
+    : findOutside(mesh.triangles, corners, mesh.nodeCount);
+  if (bad < corners)
   {
-    if (mesh.triangles[i] < 0 || mesh.triangles[i] >= mesh.nodeCount)
-    {
-      return { Status::InvalidArgument,
-        "Triangle " + std::to_string(i / 3) + " refers to node " +
-          std::to_string(mesh.triangles[i]) + ", but there are " + std::to_string(mesh.nodeCount) +
-          " nodes." };
-    }
+    return { Status::InvalidArgument,
+      "Triangle " + std::to_string(bad / 3) + " refers to node " +
+        std::to_string(mesh.wideTriangles ? mesh.wideTriangles[bad] : mesh.triangles[bad]) +
+        ", but there are " + std::to_string(mesh.nodeCount) + " nodes." };
   }
   return {};
 }

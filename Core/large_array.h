@@ -123,6 +123,13 @@ private:
   }
 };
 
+/// Give the memory of a vector back; an assignment of {} would only empty it.
+template <typename Vector>
+void release(Vector& vector)
+{
+  Vector().swap(vector);
+}
+
 template <typename T, int Shift = 0>
 using LargeArray = std::vector<T, LargeArrayAllocator<T, Shift>>;
 

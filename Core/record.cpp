@@ -424,7 +424,7 @@ public:
     return number;
   }
 
-  void clear() { this->entries_ = {}; }
+  void clear() { release(this->entries_); }
 
 private:
   struct Entry
@@ -485,13 +485,22 @@ struct RecordBuilder::Internals
   float largestError = 0.0F;
 };
 
-RecordBuilder::RecordBuilder(Index nodeCount, Index cellCount, bool trackSources)
+RecordBuilder::RecordBuilder(
+  Index nodeCount, Index cellCount, bool trackSources, Index plannedSteps)
   : internals_(std::make_unique<Internals>())
 {
   Internals& in = *this->internals_;
   in.nodeCount = nodeCount;
   in.cellCount = cellCount;
   in.record.hasSources = trackSources;
+  // Memory that is not used in the end is not touched either; growing lists would be copied.
+  constexpr std::size_t kPatch = 4; // entries a step: that many cells, and seldom more
+  const std::size_t steps = static_cast<std::size_t>(std::clamp(plannedSteps, 0, nodeCount));
+  in.record.stepShapes.reserve(steps);
+  in.record.stepErrors.reserve(steps);
+  in.record.patches.reserve(kPatch * steps);
+  in.removedNodes.reserve(steps);
+  in.freedSlots.reserve(2 * steps);
   if (trackSources)
   {
     in.sources.resize(cellCount);
@@ -601,7 +610,7 @@ void RecordBuilder::append(const Step& step)
   add(in.freedSlots, step.slots + step.newCount, step.oldCount - step.newCount);
 }
 
-Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
+Record RecordBuilder::finish(const CornersOf& cornersOf, std::vector<Index>& baseCells)
 {
   Internals& in = *this->internals_;
   Record record = std::move(in.record);
@@ -639,9 +648,9 @@ Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
   record.baseNodeCount = in.nodeCount - steps;
   record.baseCellCount = in.cellCount - static_cast<Index>(in.freedSlots.size());
   RecordOrder nodes(in.nodeCount, in.removedNodes);
-  in.removedNodes = {};
+  release(in.removedNodes);
   RecordOrder slots(in.cellCount, in.freedSlots);
-  in.freedSlots = {};
+  release(in.freedSlots);
   record.nodeOrder = std::move(nodes.order);
   record.cellOrder = std::move(slots.order);
   Index* patch = record.patches.data();
@@ -659,15 +668,16 @@ Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
       *patch = nodes.position[*patch];
     }
   }
-  slots.position = {};
+  release(slots.position);
 
   baseCells.resize(std::size_t{ kCorners } * record.baseCellCount);
   for (Index slot = 0; slot < record.baseCellCount; ++slot)
   {
+    Index* corners = baseCells.data() + std::size_t{ kCorners } * slot;
+    cornersOf(record.cellOrder[slot], corners);
     for (int corner = 0; corner < kCorners; ++corner)
     {
-      baseCells[std::size_t{ kCorners } * slot + corner] =
-        nodes.position[cells[std::size_t{ kCorners } * record.cellOrder[slot] + corner]];
+      corners[corner] = nodes.position[corners[corner]];
     }
   }
   if (record.hasSources)
@@ -677,7 +687,7 @@ Record RecordBuilder::finish(const Index* cells, std::vector<Index>& baseCells)
     {
       record.baseSources[slot] = in.sources[record.cellOrder[slot]];
     }
-    in.sources = {};
+    release(in.sources);
   }
   return record;
 }

@@ -37,6 +37,7 @@
 #include "monitor.h"
 #include "types.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -120,7 +121,8 @@ class RecordBuilder
 {
 public:
   /// @param trackSources also record from which original cell each new cell takes its values
-  RecordBuilder(Index nodeCount, Index cellCount, bool trackSources);
+  /// @param plannedSteps room for so many is set aside; more or fewer are right, too
+  RecordBuilder(Index nodeCount, Index cellCount, bool trackSources, Index plannedSteps = 0);
   ~RecordBuilder();
 
   /// One step. Cells are given by the positions of their corners in the ring of the node: 0 is the
@@ -149,10 +151,12 @@ public:
   double error() const;
 
   /// Renumber everything to record order. The builder is empty afterwards.
-  /// @param[in] cells 3 * cellCount corners as the last step left them (original numbers)
+  /// @param[in] cornersOf void(cell, corners): the 3 corners of a cell as the last step left them
+  /// (original numbers); it is asked for the cells that are left
   /// @param[out] baseCells the cells of the coarsest level, in record order
   /// Complexity: O(nodes + cells + record), in place but for the two orders.
-  Record finish(const Index* cells, std::vector<Index>& baseCells);
+  using CornersOf = std::function<void(Index cell, Index* corners)>;
+  Record finish(const CornersOf& cornersOf, std::vector<Index>& baseCells);
 
 private:
   struct Internals;

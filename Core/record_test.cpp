@@ -71,7 +71,7 @@ protected:
 
     // As the steps left the slots; those that are free may hold anything.
     const Index cells[] = { 0, 1, 2, 0, 2, 3, 7, 7, 7, 7, 7, 7 };
-    record = builder.finish(cells, baseCells);
+    record = builder.finish(testing::cornersOf(cells), baseCells);
   }
 
   Record record;
@@ -138,7 +138,7 @@ TEST(RecordBuilder, NoStepsLeaveTheMeshAsItIs)
   EXPECT_EQ(builder.stepCount(), 0);
   EXPECT_EQ(builder.error(), 0.0);
   std::vector<Index> baseCells;
-  const Record record = builder.finish(mesh.triangles.data(), baseCells);
+  const Record record = builder.finish(testing::cornersOf(mesh.triangles.data()), baseCells);
   EXPECT_EQ(baseCells, mesh.triangles);
   Undecimation cursor;
   ASSERT_TRUE(cursor.open(record.view(), baseCells.data()));
@@ -150,7 +150,7 @@ TEST(RecordBuilder, NoMeshAtAll)
 {
   RecordBuilder builder(0, 0, false);
   std::vector<Index> baseCells;
-  const Record record = builder.finish(nullptr, baseCells);
+  const Record record = builder.finish(testing::cornersOf(nullptr), baseCells);
   EXPECT_TRUE(validateRecord(record.view(), baseCells.data()));
 }
 

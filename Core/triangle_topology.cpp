@@ -12,21 +12,14 @@ TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, 
   : triangles_(triangleCount)
   , nodes_(nodeCount)
 {
-  for (Index t = 0; t < triangleCount; ++t)
-  {
-    const Index* nodes = triangles + std::size_t{ 3 } * t;
-    this->triangles_[t] = { { nodes[0], nodes[1], nodes[2] }, { kNoCorner, kNoCorner, kNoCorner },
-      kNone, 0 };
-  }
-  this->connect();
-  this->markDegenerate();
-  this->markNodes();
+  this->build(triangles);
 }
 
 TriangleTopology::TriangleTopology(const TriangleMeshView& mesh)
-  : TriangleTopology(
-      mesh.triangles, static_cast<Index>(mesh.triangleCount), static_cast<Index>(mesh.nodeCount))
+  : triangles_(mesh.triangleCount)
+  , nodes_(mesh.nodeCount)
 {
+  mesh.wideTriangles ? this->build(mesh.wideTriangles) : this->build(mesh.triangles);
   const auto place = [this](const auto* coordinates)
   {
     for (MeshNode& node : this->nodes_)
@@ -38,13 +31,30 @@ TriangleTopology::TriangleTopology(const TriangleMeshView& mesh)
   mesh.pointsDouble ? place(mesh.pointsDouble) : place(mesh.pointsFloat);
 }
 
+template <typename Number>
+void TriangleTopology::build(const Number* triangles)
+{
+  for (Triangle& t : this->triangles_)
+  {
+    t = { { static_cast<Index>(triangles[0]), static_cast<Index>(triangles[1]),
+            static_cast<Index>(triangles[2]) },
+      { kNoCorner, kNoCorner, kNoCorner }, kNone, 0 };
+    triangles += 3;
+  }
+  this->connect();
+  this->markDegenerate();
+  this->markNodes();
+}
+
 // Find the triangles on either side of each edge. Of each edge the first corner opposite to it is
 // listed at the edge's smaller node: three corners at a node on the average.
 void TriangleTopology::connect()
 {
   const Index triangleCount = static_cast<Index>(this->triangles_.size());
   LargeArray<Corner> first(this->nodes_.size(), kNoCorner);
-  LargeArray<Corner, 2> next(std::size_t{ 4 } * triangleCount); // by corner
+  LargeArray<Corner, 2> next(std::size_t{ 3 } * triangleCount);
+  const auto behind = [&next](Corner corner) -> Corner&
+  { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
   bool anyBad = false; // edges that stay open: their bits in Triangle::spare
   for (Index i = 0; i < triangleCount; ++i)
   {
@@ -57,7 +67,7 @@ void TriangleTopology::connect()
       const Corner here = makeCorner(i, c);
       Corner there = first[smaller];
       Index thereFrom = kNone;
-      for (; there != kNoCorner; there = next[there])
+      for (; there != kNoCorner; there = behind(there))
       {
         const Triangle& o = this->triangles_[triangleOf(there)];
         thereFrom = o.nodes[nextCorner(cornerOf(there))];
@@ -69,7 +79,7 @@ void TriangleTopology::connect()
       }
       if (there == kNoCorner)
       {
-        next[here] = first[smaller];
+        behind(here) = first[smaller];
         first[smaller] = here;
         this->meet(from, to);
         continue;
@@ -372,17 +382,6 @@ void TriangleTopology::replace(const Hole& hole, const HoleTriangulation& fillin
     behind[previous] = makeCorner(slot, 1);
     this->meet(previousNode, nextNode);
   }
-}
-
-std::vector<Index> TriangleTopology::cells() const
-{
-  std::vector<Index> nodes(3 * this->triangles_.size());
-  Index* out = nodes.data();
-  for (const Triangle& t : this->triangles_)
-  {
-    out = std::copy(t.nodes.begin(), t.nodes.end(), out);
-  }
-  return nodes;
 }
 
 } // namespace undecimate

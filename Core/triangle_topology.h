@@ -186,8 +186,8 @@ public:
   /// triangle i. The other slots are free afterwards.
   void replace(const Hole& hole, const HoleTriangulation& filling);
 
-  /// Corners of all slots as they stand (3 a slot), for RecordBuilder::finish().
-  std::vector<Index> cells() const;
+  /// Free the memory of the nodes. Nothing but triangle() may be used any more.
+  void freeNodes() { release(this->nodes_); }
 
 private:
   // All nodes that ever shared an edge with a node, as bits: most pairs without an edge are told by
@@ -212,6 +212,8 @@ private:
   bool findEdge(Index a, Index b) const;
   bool haveEdge(Index a, Index b) const;
   bool fillsExistingTriangle(const Hole& hole) const;
+  template <typename Number>
+  void build(const Number* triangles);
   void connect();
   void markDegenerate();
   void markNodes();

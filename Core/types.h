@@ -44,13 +44,15 @@ struct Outcome
   explicit operator bool() const { return this->status == Status::Ok; }
 };
 
-/// A triangle mesh in the caller's memory. Exactly one of the two point arrays is set.
+/// A triangle mesh in the caller's memory. Exactly one of the two point arrays and one of the two
+/// triangle arrays is set.
 struct TriangleMeshView
 {
   const float* pointsFloat = nullptr;   ///< 3 * nodeCount coordinates, or null
   const double* pointsDouble = nullptr; ///< 3 * nodeCount coordinates, or null
   std::int64_t nodeCount = 0;
-  const Index* triangles = nullptr; ///< 3 * triangleCount node numbers in [0, nodeCount)
+  const Index* triangles = nullptr; ///< 3 * triangleCount node numbers in [0, nodeCount), or null
+  const std::int64_t* wideTriangles = nullptr; ///< the same in 64 bits, or null
   std::int64_t triangleCount = 0;
   const unsigned char* keep = nullptr; ///< nodeCount flags, nonzero = never remove; or null
 };

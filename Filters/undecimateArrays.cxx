@@ -3,6 +3,7 @@
 
 #include "undecimateArrays.h"
 
+#include "array_range.h"
 #include "fingerprint.h"
 #include "undecimateMemory.h"
 
@@ -564,6 +565,40 @@ TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount)
       }
     });
   return result;
+}
+
+TriangleCorners trianglesInPlace(vtkCellArray* cells, vtkIdType pointCount)
+{
+  TriangleCorners corners;
+  const vtkIdType count = cells->GetNumberOfCells();
+  if (count == 0)
+  {
+    return corners;
+  }
+  visitCells(cells,
+    [&](const auto* offsets, const auto* connectivity, vtkIdType size)
+    {
+      vtkIdType others = 0;
+      for (vtkIdType cell = 0; cell <= count; ++cell)
+      {
+        others += offsets[cell] != 3 * cell ? 1 : 0;
+      }
+      if (others > 0 || size < 3 * count ||
+        findOutside(connectivity, 3 * count, pointCount) < 3 * count)
+      {
+        return;
+      }
+      using Number = std::decay_t<decltype(*connectivity)>;
+      if constexpr (sizeof(Number) == sizeof(std::int64_t))
+      {
+        corners.wide = reinterpret_cast<const std::int64_t*>(connectivity);
+      }
+      else
+      {
+        corners.narrow = reinterpret_cast<const std::int32_t*>(connectivity);
+      }
+    });
+  return corners;
 }
 
 vtkSmartPointer<vtkCellArray> makeTriangles(

@@ -82,6 +82,17 @@ struct TriangleCells
 /// Read triangles, checking that each point number is in [0, pointCount). Complexity: O(cells).
 TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount);
 
+/// The corners of triangles where they lie, in the width of the cell array.
+struct TriangleCorners
+{
+  const std::int32_t* narrow = nullptr;
+  const std::int64_t* wide = nullptr;
+};
+
+/// The corners of the cells, or nothing if there are none, if other cells than triangles are among
+/// them, or if one has a point outside [0, pointCount): readTriangles() says more then.
+TriangleCorners trianglesInPlace(vtkCellArray* cells, vtkIdType pointCount);
+
 /// A cell array of triangles.
 /// @param corners 3 * count point numbers
 /// @param wide 64-bit storage, else 32-bit

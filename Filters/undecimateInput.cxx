@@ -236,16 +236,22 @@ std::string MeshInput::read(vtkPolyData* mesh)
       " points and corners fit in one piece. Divide the mesh.";
   }
   this->readPoints(mesh);
-  TriangleCells cells = readTriangles(mesh->GetPolys(), points);
-  if (cells.badCell >= 0)
+  const TriangleCorners corners = trianglesInPlace(mesh->GetPolys(), points);
+  this->view_.triangles = corners.narrow;
+  this->view_.wideTriangles = corners.wide;
+  if (!corners.narrow && !corners.wide)
   {
-    return "Face " + std::to_string(cells.badCell) + " of the input refers to point " +
-      std::to_string(cells.badPoint) + ", but there are " + counted(points, "point") +
-      ". Repair the cells of the input.";
+    TriangleCells cells = readTriangles(mesh->GetPolys(), points);
+    if (cells.badCell >= 0)
+    {
+      return "Face " + std::to_string(cells.badCell) + " of the input refers to point " +
+        std::to_string(cells.badPoint) + ", but there are " + counted(points, "point") +
+        ". Repair the cells of the input.";
+    }
+    this->triangles_ = std::move(cells.corners);
+    this->view_.triangles = this->triangles_.data();
   }
-  this->triangles_ = std::move(cells.corners);
   this->view_.nodeCount = points;
-  this->view_.triangles = this->triangles_.data();
   this->view_.triangleCount = faces;
   return this->readKept(mesh);
 }
@@ -303,7 +309,9 @@ std::string MeshInput::readKept(vtkPolyData* mesh)
     const unsigned char* ghosts = cellGhosts->GetPointer(0) + before;
     for (std::int64_t i = 0; i < 3 * this->view_.triangleCount; ++i)
     {
-      this->keep_[this->triangles_[i]] |= ghosts[i / 3];
+      const std::int64_t point =
+        this->view_.wideTriangles ? this->view_.wideTriangles[i] : this->view_.triangles[i];
+      this->keep_[point] |= ghosts[i / 3];
     }
   }
   this->view_.keep = this->keep_.data();

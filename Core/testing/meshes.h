@@ -30,6 +30,13 @@ using ::testing::AssertionFailure;
 using ::testing::AssertionResult;
 using ::testing::AssertionSuccess;
 
+/// The corners of cells in an array, for RecordBuilder::finish().
+inline RecordBuilder::CornersOf cornersOf(const Index* cells)
+{
+  return [cells](Index cell, Index* corners)
+  { std::copy_n(cells + std::size_t{ 3 } * static_cast<std::size_t>(cell), 3, corners); };
+}
+
 /// A mesh that owns its arrays.
 struct Mesh
 {

@@ -152,8 +152,8 @@ void measure(
 int main(int argc, char* argv[])
 {
   const Grid grid(argc > 1 ? std::atoi(argv[1]) : 200);
-  measure(grid, "Scalar Difference", Criterion::ScalarDifference, false, 250);
-  measure(grid, "Deviation", Criterion::Deviation, false, 250);
-  measure(grid, "Scalar Difference", Criterion::ScalarDifference, true, 280);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, false, 215);
+  measure(grid, "Deviation", Criterion::Deviation, false, 215);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, true, 235);
   return faults == 0 ? 0 : 1;
 }
