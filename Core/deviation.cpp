@@ -4,6 +4,7 @@
 #include "deviation.h"
 
 #include "fold_rule.h"
+#include "original_surface.h"
 #include "triangle_distance.h"
 
 #include <algorithm>
@@ -126,6 +127,7 @@ struct Rows
 struct DeviationCriterion::Internals
 {
   TriangleTopology& topology;
+  OriginalSurface original;
   HeightFieldDirection heightField;
   double unit = 0.0; // 1 / diagonal: distances are in diagonals from the start
 
@@ -197,8 +199,10 @@ struct DeviationCriterion::Internals
   Best best;
   std::vector<unsigned char> assignment; // triangle of the best filling for each sample
 
-  Internals(TriangleTopology& topology_, const std::vector<NodalArrayView>& arrays_)
+  Internals(const TriangleMeshView& mesh, TriangleTopology& topology_,
+    const std::vector<NodalArrayView>& arrays_)
     : topology(topology_)
+    , original(mesh, topology_)
     , heightField(topology_)
     , arrays(arrays_)
   {
@@ -237,6 +241,7 @@ struct DeviationCriterion::Internals
   bool chooseTriangulation(const Hole& hole, HoleTriangulation& filling) const;
   void fillRow(const Hole& hole, const Triple& t, int row);
   double sampleSquare(int count) const;
+  double reverseSquare(const Hole& hole, const HoleTriangulation& filling, double square) const;
   void offer(const Hole& hole, const HoleTriangulation& filling);
   double shapeTerm(double shape) const { return kShapeWeight * this->radius * (1.0 - shape); }
   void compareAll(const Hole& hole);
@@ -247,9 +252,9 @@ struct DeviationCriterion::Internals
   double cost() const;
 };
 
-DeviationCriterion::DeviationCriterion(
-  TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, double scalarWeight)
-  : internals_(std::make_unique<Internals>(topology, arrays))
+DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
+  const std::vector<NodalArrayView>& arrays, double scalarWeight)
+  : internals_(std::make_unique<Internals>(mesh, topology, arrays))
 {
   Internals& in = *this->internals_;
   const Index nodeCount = topology.nodeCount();
@@ -792,6 +797,48 @@ double DeviationCriterion::Internals::sampleSquare(int count) const
   return largest;
 }
 
+// Largest squared distance from the new surface back to the original one, or `square` if that is
+// larger: at the middle of each new edge and of each new triangle.
+double DeviationCriterion::Internals::reverseSquare(
+  const Hole& hole, const HoleTriangulation& filling, double square) const
+{
+  const Vector center = this->topology.node(hole.node).position;
+  const double scale = 1.0 / this->unit;
+  const auto measure = [&](const Vector& place)
+  {
+    // Start at the nearest of the removed nodes.
+    int nearest = 0;
+    float least = kInfinity;
+    const float x = static_cast<float>(place.x);
+    const float y = static_cast<float>(place.y);
+    const float z = static_cast<float>(place.z);
+    for (int s = 0; s < static_cast<int>(this->sampleNodes.size()); ++s)
+    {
+      const float dx = this->sampleRows.x[s] - x;
+      const float dy = this->sampleRows.y[s] - y;
+      const float dz = this->sampleRows.z[s] - z;
+      const float distance = dx * dx + dy * dy + dz * dz;
+      nearest = distance < least ? s : nearest;
+      least = distance < least ? distance : least;
+    }
+    const double found = this->original.squaredDistance(
+      center + scale * place, this->sampleNodes[nearest], square * scale * scale);
+    square = std::max(square, found * this->unit * this->unit);
+  };
+  for (int t = 0; t < filling.count; ++t)
+  {
+    const Vector& a = this->ring[filling.triangles[t][0]];
+    const Vector& b = this->ring[filling.triangles[t][1]];
+    const Vector& c = this->ring[filling.triangles[t][2]];
+    measure((1.0 / 3.0) * (a + b + c));
+    if (t + 1 < filling.count)
+    {
+      measure(0.5 * (a + c));
+    }
+  }
+  return square;
+}
+
 // Measure a triangulation, and keep it if it is the best so far.
 void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulation& filling)
 {
@@ -827,6 +874,7 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
     this->fillRow(hole, filling.triangles[t], t);
   }
   square = std::max(square, this->sampleSquare(filling.count));
+  square = this->reverseSquare(hole, filling, square);
   const double score = std::sqrt(square) + this->shapeTerm(shape);
   if (score < this->best.score)
   {

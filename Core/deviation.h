@@ -47,8 +47,8 @@ public:
 
   /// Nodes where an array is NaN or infinite are kept from now on.
   /// @param topology with the positions of the nodes
-  DeviationCriterion(
-    TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, double scalarWeight);
+  DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
+    const std::vector<NodalArrayView>& arrays, double scalarWeight);
   ~DeviationCriterion();
 
   /// Cost of the best triangulation; false if there is none.

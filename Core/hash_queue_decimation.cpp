@@ -499,7 +499,7 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
   const NodalArrayView* array =
     options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr;
   const Status status = options.criterion == Criterion::Deviation
-    ? decimateBy(DeviationCriterion(topology, options.arrays, options.scalarWeight))
+    ? decimateBy(DeviationCriterion(mesh, topology, options.arrays, options.scalarWeight))
     : decimateBy(MeanEdgeCriterion(topology, array));
   return { status, status == Status::Cancelled ? "Cancelled." : "" };
 }
