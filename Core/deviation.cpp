@@ -152,6 +152,7 @@ struct DeviationCriterion::Internals
   double radius = 0.0;
   Rows samples;                   // the node, then the nodes removed before
   std::vector<Index> sampleNodes; // all of them
+  bool untouched = false;         // all triangles of the hole are original ones
   std::vector<float> values;      // of the arrays: a row of samples for each component
   PointRows sampleRows;
   double fixedSquare = 0.0; // what every triangulation costs: the new boundary edge
@@ -335,10 +336,13 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
   this->sampleNodes.clear();
   this->samples.add(kOrigin);
   this->sampleNodes.push_back(hole.node);
+  this->untouched = true;
   for (int i = 0; i < hole.triangleCount; ++i)
   {
-    for (Index node = this->topology.triangle(triangleOf(hole.corners[i])).first; node != kNone;
-         node = this->next[node])
+    const TriangleTopology::Triangle& triangle =
+      this->topology.triangle(triangleOf(hole.corners[i]));
+    this->untouched = this->untouched && triangle.spare == 0;
+    for (Index node = triangle.first; node != kNone; node = this->next[node])
     {
       this->samples.add(this->unit * (this->topology.node(node).position - center));
       this->sampleNodes.push_back(node);
@@ -798,10 +802,15 @@ double DeviationCriterion::Internals::sampleSquare(int count) const
 }
 
 // Largest squared distance from the new surface back to the original one, or `square` if that is
-// larger: at the middle of each new edge and of each new triangle.
+// larger: along each new edge and at the middle of each new triangle. While the hole's triangles
+// are the original ones, its node and the crossings of the edges have told it all.
 double DeviationCriterion::Internals::reverseSquare(
   const Hole& hole, const HoleTriangulation& filling, double square) const
 {
+  if (this->untouched)
+  {
+    return square;
+  }
   const Vector center = this->topology.node(hole.node).position;
   const double scale = 1.0 / this->unit;
   const auto measure = [&](const Vector& place)
@@ -834,6 +843,8 @@ double DeviationCriterion::Internals::reverseSquare(
     if (t + 1 < filling.count)
     {
       measure(0.5 * (a + c));
+      measure(0.25 * a + 0.75 * c);
+      measure(0.75 * a + 0.25 * c);
     }
   }
   return square;
@@ -874,7 +885,6 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
     this->fillRow(hole, filling.triangles[t], t);
   }
   square = std::max(square, this->sampleSquare(filling.count));
-  square = this->reverseSquare(hole, filling, square);
   const double score = std::sqrt(square) + this->shapeTerm(shape);
   if (score < this->best.score)
   {
@@ -1060,12 +1070,21 @@ bool DeviationCriterion::retriangulate(
   return found;
 }
 
+double DeviationCriterion::confirm(const Hole& hole, const HoleTriangulation& filling)
+{
+  Internals& in = *this->internals_;
+  in.best.square = in.reverseSquare(hole, filling, in.best.square);
+  return in.cost();
+}
+
 void DeviationCriterion::removed(const Hole& hole, const HoleTriangulation& filling)
 {
   Internals& in = *this->internals_;
   for (int i = 0; i < hole.triangleCount; ++i)
   {
-    in.topology.triangle(triangleOf(hole.corners[i])).first = kNone;
+    TriangleTopology::Triangle& triangle = in.topology.triangle(triangleOf(hole.corners[i]));
+    triangle.first = kNone;
+    triangle.spare = 1; // no longer an original one
   }
   for (std::size_t s = 0; s < in.sampleNodes.size(); ++s)
   {

@@ -54,8 +54,13 @@ public:
   /// Cost of the best triangulation; false if there is none.
   bool evaluate(Index node, double& cost);
 
-  /// The best triangulation of a node's hole; false if there is none.
+  /// The best triangulation of a node's hole; false if there is none. The cost may be less than it
+  /// really is, see confirm().
   bool retriangulate(Index node, Hole& hole, HoleTriangulation& filling, double& cost);
+
+  /// The cost of the last retriangulate(), with the way back to the original surface, which only
+  /// those that are about to be made need to know.
+  double confirm(const Hole& hole, const HoleTriangulation& filling);
 
   /// Take note of a removal (of the node and filling of the last retriangulate()).
   void removed(const Hole& hole, const HoleTriangulation& filling);

@@ -169,11 +169,27 @@ public:
       {
         continue;
       }
-      const Index current = intervals.of(cost);
-      if (current > interval && current > queue.lowestInterval() && !queue.empty())
+      const auto mustWait = [&]
       {
-        queue.insert(node, current);
+        const Index current = intervals.of(cost);
+        if (current > interval && current > queue.lowestInterval() && !queue.empty())
+        {
+          queue.insert(node, current);
+          return true;
+        }
+        return false;
+      };
+      if (mustWait())
+      {
         continue;
+      }
+      if constexpr (CriterionType::kLazy)
+      {
+        cost = this->criterion_.confirm(this->hole_, this->filling_);
+        if (mustWait())
+        {
+          continue;
+        }
       }
       if (cost > this->goal_.error)
       {

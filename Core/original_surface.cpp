@@ -113,8 +113,9 @@ double OriginalSurface::squaredDistance(const Vector& point, Index start, double
 {
   std::array<Index, kMaximumVisits> visited;
   int visits = 0;
-  const auto isVisited = [&](Index node)
-  { return std::find(visited.begin(), visited.begin() + visits, node) != visited.begin() + visits; };
+  const auto isVisited = [&](Index node) {
+    return std::find(visited.begin(), visited.begin() + visits, node) != visited.begin() + visits;
+  };
   double nearest = HUGE_VAL;
   std::array<Index, 3> best{ start, start, start }; // corners of the nearest triangle
   while (visits < kMaximumVisits)
