@@ -10,7 +10,9 @@
 ///   (b) the distance between each new edge and the old edges that it crosses;
 /// as a fraction of the diagonal of the bounding box. Two surfaces of flat pieces are farthest
 /// apart at a node of one of them or where two of their edges cross, so (a) and (b) see the whole
-/// change of a step. At the boundary also (c) the distance of the removed boundary nodes to the new
+/// change of a step. The way back, from the new edges and triangles to the original surface
+/// (original_surface.h), is measured for a removal that is about to be made. At the boundary also
+/// (c) the distance of the removed boundary nodes to the new
 /// boundary edge. A nodal array is compared at the same places: its error, |interpolated - value| /
 /// range, times a weight, counts if it is larger.
 ///

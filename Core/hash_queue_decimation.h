@@ -108,7 +108,7 @@ struct HashQueueDecimationResult
 /// @param monitor progress and cancel
 /// @param[out] result complete on Ok, empty otherwise
 /// Complexity: O(nodes); Deviation O(nodes log(nodes / nodes left)).
-/// Memory: 185 to 205 bytes a node at the largest moment, the result included (memory.md).
+/// Memory: 185 to 230 bytes a node at the largest moment, the result included (memory.md).
 /// Throws nothing: exceptions of the monitor's callback end the call as Cancelled.
 Outcome decimate(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
   Monitor& monitor, HashQueueDecimationResult& result);

@@ -153,7 +153,7 @@ int main(int argc, char* argv[])
 {
   const Grid grid(argc > 1 ? std::atoi(argv[1]) : 200);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, false, 215);
-  measure(grid, "Deviation", Criterion::Deviation, false, 215);
+  measure(grid, "Deviation", Criterion::Deviation, false, 245);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, true, 235);
   return faults == 0 ? 0 : 1;
 }

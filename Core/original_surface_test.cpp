@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "original_surface.h"
+
+#include "testing/closest_point.h"
+#include "testing/meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace undecimate
+{
+namespace
+{
+
+using testing::Mesh;
+
+Vector pointOf(const Mesh& mesh, Index node)
+{
+  const std::array<double, 3> p = mesh.point(node);
+  return { p[0], p[1], p[2] };
+}
+
+/// By all triangles.
+double trueSquare(const Mesh& mesh, const Vector& p)
+{
+  double least = HUGE_VAL;
+  for (Index t = 0; t < mesh.triangleCount(); ++t)
+  {
+    const Index* corners = mesh.triangles.data() + std::size_t{ 3 } * static_cast<std::size_t>(t);
+    least = std::min(least,
+      testing::closestPoint(
+        p, pointOf(mesh, corners[0]), pointOf(mesh, corners[1]), pointOf(mesh, corners[2]))
+        .square);
+  }
+  return least;
+}
+
+Index nearestNode(const Mesh& mesh, const Vector& p)
+{
+  Index nearest = 0;
+  double least = HUGE_VAL;
+  for (Index node = 0; node < mesh.nodeCount(); ++node)
+  {
+    const Vector d = p - pointOf(mesh, node);
+    nearest = dot(d, d) < least ? node : nearest;
+    least = std::min(least, dot(d, d));
+  }
+  return nearest;
+}
+
+// From the nearest node the walk finds the nearest triangle of surfaces without folds.
+TEST(OriginalSurface, FindsTheNearestTriangleFromTheNearestNode)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> shift(-0.05, 0.05);
+  for (const Mesh& mesh : { testing::torus(24, 12), testing::cube(6), testing::flatGrid(9, 7) })
+  {
+    const TriangleTopology topology(mesh.view());
+    const TriangleMeshView view = mesh.view();
+    const OriginalSurface surface(view, topology);
+    for (int attempt = 0; attempt < 400; ++attempt)
+    {
+      const auto any = [&] { return static_cast<Index>(random() % unsigned(mesh.nodeCount())); };
+      const Vector place = pointOf(mesh, any());
+      const Vector p{ place.x + shift(random), place.y + shift(random), place.z + shift(random) };
+      const double expected = trueSquare(mesh, p);
+      EXPECT_NEAR(surface.squaredDistance(p, nearestNode(mesh, p), -1.0), expected, 1e-12);
+      // From anywhere it is never too small.
+      EXPECT_GE(surface.squaredDistance(p, any(), -1.0), expected - 1e-12);
+    }
+  }
+}
+
+TEST(OriginalSurface, StopsWhenItIsNearEnough)
+{
+  const Mesh mesh = testing::flatGrid(9, 7);
+  const TriangleTopology topology(mesh.view());
+  const TriangleMeshView view = mesh.view();
+  const OriginalSurface surface(view, topology);
+  const Vector p = pointOf(mesh, mesh.nodeCount() - 1);
+  EXPECT_GT(surface.squaredDistance(p, 0, HUGE_VAL), 0.0); // the first triangle will do
+  EXPECT_EQ(surface.squaredDistance(p, mesh.nodeCount() - 1, -1.0), 0.0);
+}
+
+TEST(OriginalSurface, ReadsTrianglesOfEitherWidth)
+{
+  const Mesh mesh = testing::cube(3);
+  const std::vector<std::int64_t> wide(mesh.triangles.begin(), mesh.triangles.end());
+  TriangleMeshView view = mesh.view();
+  view.triangles = nullptr;
+  view.wideTriangles = wide.data();
+  const TriangleTopology topology(view);
+  const OriginalSurface surface(view, topology);
+  const Vector p{ 3.0, 2.0, 1.0 };
+  EXPECT_NEAR(surface.squaredDistance(p, nearestNode(mesh, p), -1.0), trueSquare(mesh, p), 1e-12);
+}
+
+} // namespace
+} // namespace undecimate
