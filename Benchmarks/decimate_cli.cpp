@@ -94,8 +94,9 @@ bool readMesh(const std::string& name, Mesh& mesh)
 void writeLevel(const std::string& name, const Mesh& mesh, const undecimate::Undecimation& cursor)
 {
   std::ofstream out(name, std::ios::binary);
-  const std::int64_t header[6] = { cursor.nodeCount(), cursor.cellCount(), mesh.header[2], 0, 0,
-    0 };
+  const std::int64_t components = mesh.header[3];
+  const std::int64_t header[6] = { cursor.nodeCount(), cursor.cellCount(), mesh.header[2],
+    components, 0, 0 };
   out.write(reinterpret_cast<const char*>(header), sizeof(header));
   const Index* order = cursor.record().nodeOrder;
   for (Index i = 0; i < cursor.nodeCount(); ++i)
@@ -112,6 +113,12 @@ void writeLevel(const std::string& name, const Mesh& mesh, const undecimate::Und
   }
   out.write(reinterpret_cast<const char*>(cursor.cells()),
     static_cast<std::streamsize>(3 * sizeof(Index)) * cursor.cellCount());
+  for (Index i = 0; components > 0 && i < cursor.nodeCount(); ++i)
+  {
+    const auto from = static_cast<std::size_t>(components * order[i]);
+    out.write(reinterpret_cast<const char*>(&mesh.values[from]),
+      static_cast<std::streamsize>(sizeof(float)) * components);
+  }
 }
 
 double median(std::vector<double> values)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Criterion Deviation against VTK's decimators: Hausdorff distance at equal triangle counts.
 
-    run.sh deviation [--meshes bunny grid100 ...] [--percent 25 10 5 1] [--jobs 2]
+    run.sh deviation [--meshes bunny grid100 ...] [--percent 25 10 5 2 1] [--jobs 2]
 
 The rivals' results are kept (~/.cache/undecimate/rivals) and reused, so a second run only measures
 ours; --fresh-rivals measures them again. Ours is decimated once to the smallest count, and the other
@@ -48,16 +48,19 @@ def run_json(command):
     return json.loads(done.stdout)
 
 
-def prepare(name):
-    """The mesh, its file in the driver's format, and a key of its content."""
-    points, triangles = meshes.load(name)
-    key = hashlib.sha256(points.tobytes() + triangles.tobytes()).hexdigest()[:16]
+def prepare(name, array=None):
+    """The mesh (with the name of a nodal array also its values, else None), a key of its content, and its
+    file in the driver's format."""
+    points, triangles, *more = meshes.load(name, array)
+    values = more[0] if more else None
+    content = [a.tobytes() for a in (points, triangles, *more)]
+    key = hashlib.sha256(b"".join(content)).hexdigest()[:16]
     folder = os.path.join(meshes.CACHE, "meshes")
     os.makedirs(folder, exist_ok=True)
     file = os.path.join(folder, key + ".mesh")
     if not os.path.exists(file):
-        meshes.write(file, points, triangles)
-    return points, triangles, key, file
+        meshes.write(file, points, triangles, values)
+    return points, triangles, values, key, file
 
 
 def rival_rows(name, key, file, reference, total, args):
@@ -90,7 +93,7 @@ def rival_rows(name, key, file, reference, total, args):
     return out
 
 
-def own_rows(file, reference, rivals, total, args):
+def own_rows(file, reference, rivals, total, args, faults=False):
     """{triangle count: row} of ours at all counts that the comparison needs."""
     wanted = {max(4, round(total * p / 100)) for p in args.percent}
     wanted |= {r["triangles"] for r in rivals.values()
@@ -103,7 +106,10 @@ def own_rows(file, reference, rivals, total, args):
         for level in result["levels"]:
             row = dict(level, stop=result["stop"])
             points, triangles = meshes.read(row.pop("file"))
-            row.update(reference.measure(points, triangles))
+            values = None if reference.values is None else meshes.read_values(level["file"])
+            row.update(reference.measure(points, triangles, values))
+            if faults:
+                row.update(reference.faults(points, triangles))
             row["claim"] = row.pop("error") / row["hausdorff"] if row["hausdorff"] > 1e-6 else None
             rows[level["target"]] = row
     return rows
@@ -111,7 +117,7 @@ def own_rows(file, reference, rivals, total, args):
 
 def measure(name, args):
     from metric import Reference
-    points, triangles, key, file = prepare(name)
+    points, triangles, _, key, file = prepare(name)
     reference = Reference(points, triangles)
     rivals = rival_rows(name, key, file, reference, len(triangles), args)
     own = {} if args.rivals_only else own_rows(file, reference, rivals, len(triangles), args)
@@ -213,7 +219,7 @@ def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     a.add_argument("--cli", required=True, help="the built decimate_cli (run.sh passes it)")
     a.add_argument("--meshes", nargs="+", help="names of the data set, gridN, or .vtp files; default: all")
-    a.add_argument("--percent", nargs="+", type=float, default=[25, 10, 5, 1], help="of the triangles to keep")
+    a.add_argument("--percent", nargs="+", type=float, default=[25, 10, 5, 2, 1], help="of the triangles to keep")
     a.add_argument("--jobs", type=int, default=2, help="meshes at a time")
     a.add_argument("--reps", type=int, default=1, help="runs of which the median CPU time counts")
     a.add_argument("--time-each", action="store_true", help="time a decimation of ours to each count")

@@ -41,16 +41,19 @@ def path(name):
     """File of a mesh of the data set; the plate is also in Data/."""
     for candidate in (os.path.join(DATA, "triangles", name + ".vtp"),
                       os.path.join(DATA, "static", name + ".vtp"),
+                      os.path.join(DATA, "large", name + ".vtp"),
                       os.path.join(ROOT, "Data", name + ".vtp"), name):
         if os.path.exists(candidate):
             return candidate
     raise SystemExit(f"no mesh '{name}': not in {DATA}, not in Data/, not a file")
 
 
-def load(name):
-    """Points (as stored), triangles (int32) of a mesh: gridN, a name of the data set, or a file."""
+def load(name, array=None):
+    """Points (as stored) and triangles (int32) of a mesh: gridN, a name of the data set, or a file. With
+    the name of a nodal array of one component (grid: any name) also its values."""
     if name.startswith("grid") and name[4:].isdigit():
-        return grid(int(name[4:]))[:2]
+        points, triangles, values = grid(int(name[4:]))
+        return (points, triangles) if array is None else (points, triangles, values)
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
     reader = vtkXMLPolyDataReader()
@@ -61,7 +64,13 @@ def load(name):
     if polys.GetMaxCellSize() != 3:
         raise SystemExit(f"{name}: not triangles only")
     triangles = vtk_to_numpy(polys.GetConnectivityArray()).reshape(-1, 3).astype(np.int32)
-    return np.array(vtk_to_numpy(out.GetPoints().GetData())), triangles
+    mesh = np.array(vtk_to_numpy(out.GetPoints().GetData())), triangles
+    if array is None:
+        return mesh
+    values = out.GetPointData().GetArray(array)
+    if values is None or values.GetNumberOfComponents() != 1:
+        raise SystemExit(f"{name}: no nodal array '{array}' of one component")
+    return (*mesh, np.array(vtk_to_numpy(values)))
 
 
 def write(name, points, triangles, values=None):
@@ -82,3 +91,12 @@ def read(name):
         n, m, size = np.fromfile(f, np.int64, 6)[:3]
         points = np.fromfile(f, np.float32 if size == 4 else np.float64, 3 * n).reshape(-1, 3)
         return points, np.fromfile(f, np.int32, 3 * m).reshape(-1, 3)
+
+
+def read_values(name):
+    """The nodal array of a mesh file, one value per node; None if it has none."""
+    with open(name, "rb") as f:
+        n, m, size, components = np.fromfile(f, np.int64, 6)[:4]
+        f.seek(3 * n * size + 12 * m, os.SEEK_CUR)
+        values = np.fromfile(f, np.float32, components * n)
+    return values if components == 1 else None
