@@ -19,12 +19,12 @@ def first_line(*command):
         return "unknown " + command[0]
 
 
-def main():
+def line():
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
     pins = ", ".join(f"{p} {version(p)}" for p in ("vtk", "numpy", "open3d-cpu"))
-    print(f"{cpu()}, {os.cpu_count()} cores, {memory:.0f} GiB; {first_line('c++', '--version')}; "
-          f"Python {platform.python_version()}, {pins} (PyPI). One thread, CPU seconds of the process.")
+    return (f"{cpu()}, {os.cpu_count()} cores, {memory:.0f} GiB; {first_line('c++', '--version')}; "
+            f"Python {platform.python_version()}, {pins} (PyPI). One thread, CPU seconds of the process.")
 
 
 if __name__ == "__main__":
-    main()
+    print(line())

@@ -37,15 +37,18 @@ def data_set():
     return names + [s for s in STATIC if os.path.exists(os.path.join(DATA, "static", s + ".vtp"))]
 
 
+def find(name):
+    """File of a mesh of the data set, or None; the plate is also in Data/."""
+    folders = [os.path.join(DATA, kind) for kind in ("triangles", "static", "large")] + [os.path.join(ROOT, "Data")]
+    candidates = [os.path.join(folder, name + ".vtp") for folder in folders] + [name]
+    return next((c for c in candidates if os.path.exists(c)), None)
+
+
 def path(name):
-    """File of a mesh of the data set; the plate is also in Data/."""
-    for candidate in (os.path.join(DATA, "triangles", name + ".vtp"),
-                      os.path.join(DATA, "static", name + ".vtp"),
-                      os.path.join(DATA, "large", name + ".vtp"),
-                      os.path.join(ROOT, "Data", name + ".vtp"), name):
-        if os.path.exists(candidate):
-            return candidate
-    raise SystemExit(f"no mesh '{name}': not in {DATA}, not in Data/, not a file")
+    file = find(name)
+    if file is None:
+        raise SystemExit(f"no mesh '{name}': not in {DATA}, not in Data/, not a file")
+    return file
 
 
 def load(name, array=None):

@@ -29,6 +29,7 @@ NEGLIGIBLE = 1e-6  # of the diagonal: rounding of the float32 coordinates
 
 
 FACING = .996  # minus the cosine of two normals: the triangles lie on each other within 5 degrees
+LONGEST = 1e6  # aspect ratio of a triangle without area
 FLAT = 1e-6  # 2 area / longest edge^2 of a triangle that counts as degenerate
 
 
@@ -188,13 +189,13 @@ def _unit_normals(points, triangles):
 
 def shape(points, triangles):
     """2 area / longest edge^2, and the aspect ratio longest edge / (2 sqrt(3) radius of the inscribed
-    circle), which is 1 for the equilateral triangle."""
+    circle), which is 1 for the equilateral triangle and at most LONGEST."""
     t = np.asarray(points, float)[triangles]
     edges = np.stack([np.linalg.norm(t[:, i] - t[:, i - 1], axis=1) for i in range(3)], axis=1)
     area = .5 * np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
     longest = np.maximum(edges.max(1), 1e-300)
     radius = 2 * area / np.maximum(edges.sum(1), 1e-300)
-    return 2 * area / longest ** 2, longest / np.maximum(2 * np.sqrt(3) * radius, 1e-300)
+    return 2 * area / longest ** 2, np.minimum(longest / np.maximum(2 * np.sqrt(3) * radius, 1e-300), LONGEST)
 
 
 def _pairs(triangles):

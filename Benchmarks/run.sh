@@ -3,36 +3,67 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # The benchmarks in one command; prints Markdown. Usage: Benchmarks/run.sh [PART [OPTIONS]]
-#   all          everything below (default); with --results FOLDER also as files
+#   all          linear, level, decimation and deviation (default); with --results FOLDER also as files
 #   linear       table 1 of the paper: CPU time of the core against the number of nodes
 #   level        a change of level by 1 % at 1M nodes against memcpy: core, then the whole filter
 #   decimation   filter against filter at 1M nodes: vtkDecimatePro, vtkQuadricDecimation
 #   deviation    Hausdorff distance at equal triangle counts over the data set
+#   field        the same against the whole field of decimators, into Benchmarks/results (the first time: hours)
+#   field-ours   ours alone against the rivals' results that are there (minutes); --against OTHER.json
+#   field-times  CPU time and memory of the field on grids and the gearbox, into Benchmarks/results
+#   page         Documentation/benchmark.md, its plots and the table of the README from Benchmarks/results
+#   test         tests of the error tool and of the comparison
 #   build        only build the drivers and the Python environment
-# Options go to the part: see Benchmarks/README.md. Needs g++, cmake and Python 3 with venv; 'level' and
-# 'decimation' need the project built in build/ (or --build FOLDER).
+# Options go to the part: see Benchmarks/README.md. Needs g++, cmake and Python 3 with venv; 'level',
+# 'decimation' and 'field-times' need the project built in build/ (or --build FOLDER).
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/undecimate"
 part=${1:-all}
 [ $# -gt 0 ] && shift
 
-# The drivers.
+# The drivers that measure the core; the page and the tests need none.
 build="$cache/benchmarks-build"
-cmake -S "$here" -B "$build" -DCMAKE_BUILD_TYPE=Release > /dev/null
-cmake --build "$build" -j 2 > "$cache/benchmarks-build.log" 2>&1 || {
-  cat "$cache/benchmarks-build.log" >&2
-  exit 1
-}
-
-# The Python environment; made anew when the pins change.
-venv="$cache/venv"
-if ! cmp -s "$here/requirements.txt" "$venv/requirements.txt"; then
-  python3 -m venv --clear "$venv"
-  "$venv/bin/pip" install --quiet --disable-pip-version-check -r "$here/requirements.txt"
-  cp "$here/requirements.txt" "$venv/requirements.txt"
+if [ "$part" != page ] && [ "$part" != test ]; then
+  cmake -S "$here" -B "$build" -DCMAKE_BUILD_TYPE=Release > /dev/null
+  cmake --build "$build" -j 2 > "$cache/benchmarks-build.log" 2>&1 || {
+    cat "$cache/benchmarks-build.log" >&2
+    exit 1
+  }
 fi
-python="$venv/bin/python"
+
+# A Python environment; made anew when the pins change.
+environment() { # name, requirements
+  if ! cmp -s "$here/$2" "$cache/$1/requirements.txt"; then
+    python3 -m venv --clear "$cache/$1"
+    "$cache/$1/bin/pip" install --quiet --disable-pip-version-check -r "$here/$2"
+    cp "$here/$2" "$cache/$1/requirements.txt"
+  fi
+}
+environment venv requirements.txt
+python="$cache/venv/bin/python"
+
+# The rivals: two environments and the drivers of the C++ libraries. meshoptimizer comes as the sources in
+# its Rust package, since no Debian or Python package has this version; MESHOPTIMIZER_SOURCE names other ones.
+rivals() {
+  environment rivals-venv requirements-rivals.txt
+  environment blender-venv requirements-blender.txt
+  source=${MESHOPTIMIZER_SOURCE:-}
+  if [ -z "$source" ] && command -v cargo > /dev/null; then
+    source="$cache/meshoptimizer/vendor/meshopt/vendor/src"
+    if [ ! -d "$source" ]; then
+      rm -rf "$cache/meshoptimizer"
+      mkdir -p "$cache/meshoptimizer"
+      (cd "$cache/meshoptimizer" && cargo init --quiet --vcs none --name sources . &&
+        cargo add --quiet meshopt@=0.7.0 && cargo vendor --quiet vendor > /dev/null)
+    fi
+  fi
+  cmake -S "$here/field_drivers" -B "$cache/rivals-build" -DMESHOPTIMIZER_SOURCE="$source" | grep Without || true
+  cmake --build "$cache/rivals-build" -j 2 > "$cache/rivals-build.log" 2>&1 || {
+    cat "$cache/rivals-build.log" >&2
+    exit 1
+  }
+}
 
 run() {
   part=$1
@@ -43,12 +74,28 @@ run() {
     level-filter) "$python" "$here/filters.py" level "$@" ;;
     decimation) "$python" "$here/filters.py" decimation "$@" ;;
     deviation) "$python" "$here/deviation.py" --cli "$build/decimate_cli" "$@" ;;
+    field)
+      rivals
+      "$python" "$here/field.py" rivals "$@"
+      "$python" "$here/field.py" ours --cli "$build/decimate_cli" --json "$cache/field/ours.json"
+      "$python" "$here/field.py" collect --ours "$cache/field/ours.json"
+      ;;
+    field-ours)
+      "$python" "$here/field.py" ours --cli "$build/decimate_cli" --json "$cache/field/ours-now.json"
+      "$python" "$here/field.py" summary --ours "$cache/field/ours-now.json" "$@"
+      ;;
+    field-times)
+      rivals
+      "$python" "$here/field.py" times "$@"
+      ;;
+    page) "$python" "$here/field_page.py" "$@" ;;
+    test) "$python" "$here/metric_test.py" "$@" ;;
   esac
 }
 
 case $part in
   build) ;;
-  linear | decimation | deviation) run "$part" "$@" ;;
+  linear | decimation | deviation | field | field-ours | field-times | page | test) run "$part" "$@" ;;
   level)
     run level-core
     echo
@@ -79,7 +126,7 @@ case $part in
     save deviation run deviation --reps 3 --time-each --fresh-rivals --jobs 1
     ;;
   *)
-    sed -n '5,14p' "$0" >&2
+    sed -n '5,19p' "$0" >&2
     exit 2
     ;;
 esac
