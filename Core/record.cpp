@@ -19,10 +19,19 @@ namespace undecimate
 namespace
 {
 
-constexpr int kCorners = 3;
+constexpr int kTriangleCorners = 3;
+constexpr int kMostCorners = 4;
 
-// Nodes of a patch: each old cell adds at most kCorners of them, and local numbers are bytes.
+// Local numbers are bytes.
 constexpr int kMaximumLocals = 256;
+static_assert(kMaximumRing < kNoLocal, "");
+
+// Whether only the last corner of a cell is empty, if any.
+template <typename Corner>
+bool isFace(const Corner* cell, Corner none)
+{
+  return std::find(cell, cell + kTriangleCorners, none) == cell + kTriangleCorners;
+}
 
 Outcome damaged(const char* array, std::int64_t entry, const char* why)
 {
@@ -99,7 +108,8 @@ Outcome checkShape(const RecordView& record, Index shape)
   const int extra = bytes[2];
   const int corners = record.cornersPerCell;
   const Index size = 3 + corners * (oldCount + newCount) + (record.hasSources ? newCount : 0);
-  if (end - begin != size || oldCount < 1 || oldCount > kMaximumPatchCells || newCount >= oldCount)
+  const int mostNew = corners == kTriangleCorners ? oldCount - 1 : oldCount;
+  if (end - begin != size || oldCount < 1 || oldCount > kMaximumPatchCells || newCount > mostNew)
   {
     return damaged("Shapes", begin, "wrong counts");
   }
@@ -107,14 +117,30 @@ Outcome checkShape(const RecordView& record, Index shape)
   const unsigned char* newCells = oldCells + corners * oldCount;
   std::array<bool, kMaximumLocals> inOld{};
   std::array<bool, kMaximumLocals> inNew{};
+  const bool mixed = corners == kMostCorners;
+  for (int i = 0; mixed && i < oldCount + newCount; ++i)
+  {
+    if (!isFace(oldCells + corners * i, kNoLocal))
+    {
+      return damaged("Shapes", begin + 3 + corners * i, "a cell of fewer than three corners");
+    }
+  }
   int largest = 0;
   for (int i = 0; i < corners * oldCount; ++i)
   {
+    if (mixed && oldCells[i] == kNoLocal)
+    {
+      continue;
+    }
     inOld[oldCells[i]] = true;
     largest = std::max<int>(largest, oldCells[i]);
   }
   for (int i = 0; i < corners * newCount; ++i)
   {
+    if (mixed && newCells[i] == kNoLocal)
+    {
+      continue;
+    }
     if (newCells[i] == 0 || !inOld[newCells[i]])
     {
       return damaged("Shapes", begin + 3 + corners * oldCount + i, "unknown local node");
@@ -318,7 +344,7 @@ Outcome validateRecord(
     record.baseCellCount < 0 || record.shapeCount < 0 || record.patchSize < 0 ||
     record.lostSourceSize < 0 || record.baseCellCount > record.cellCount ||
     record.stepCount != record.nodeCount - record.baseNodeCount || record.stepCount < 0 ||
-    record.cornersPerCell != kCorners)
+    record.cornersPerCell < kTriangleCorners || record.cornersPerCell > kMostCorners)
   {
     return { Status::InvalidRecord, "The record's counts contradict each other." };
   }
@@ -356,11 +382,18 @@ Outcome validateRecord(
       return o;
     }
   }
-  for (std::int64_t i = 0; i < std::int64_t{ kCorners } * record.baseCellCount; ++i)
+  const int corners = record.cornersPerCell;
+  const bool mixed = corners == kMostCorners;
+  for (std::int64_t i = 0; i < std::int64_t{ corners } * record.baseCellCount; ++i)
   {
-    if (baseCells[i] < 0 || baseCells[i] >= record.baseNodeCount)
+    const bool none = mixed && baseCells[i] == kNone;
+    if (!none && (baseCells[i] < 0 || baseCells[i] >= record.baseNodeCount))
     {
-      return damaged("cells of the coarse mesh", i / kCorners, "no such node");
+      return damaged("cells of the coarse mesh", i / corners, "no such node");
+    }
+    if (i % corners == 0 && mixed && !isFace(baseCells + i, kNone))
+    {
+      return damaged("cells of the coarse mesh", i / corners, "fewer than three corners");
     }
   }
   if (record.hasSources)
@@ -389,7 +422,7 @@ class ShapeTable
 {
 public:
   // Room for the longest shape, in whole words.
-  static constexpr int kCapacity = (3 + (2 * kCorners + 1) * kMaximumPatchCells + 7) / 8 * 8;
+  static constexpr int kCapacity = (3 + (2 * kMostCorners + 1) * kMaximumPatchCells + 7) / 8 * 8;
   using Shape = std::array<unsigned char, kCapacity>;
 
   /// Number of a shape, which is added to the record if it is new.
@@ -486,13 +519,14 @@ struct RecordBuilder::Internals
 };
 
 RecordBuilder::RecordBuilder(
-  Index nodeCount, Index cellCount, bool trackSources, Index plannedSteps)
+  Index nodeCount, Index cellCount, bool trackSources, Index plannedSteps, int cornersPerCell)
   : internals_(std::make_unique<Internals>())
 {
   Internals& in = *this->internals_;
   in.nodeCount = nodeCount;
   in.cellCount = cellCount;
   in.record.hasSources = trackSources;
+  in.record.cornersPerCell = cornersPerCell;
   // Memory that is not used in the end is not touched either; growing lists would be copied.
   constexpr std::size_t kPatch = 4; // entries a step: that many cells, and seldom more
   const std::size_t steps = static_cast<std::size_t>(std::clamp(plannedSteps, 0, nodeCount));
@@ -525,21 +559,34 @@ double RecordBuilder::error() const
 
 void RecordBuilder::append(const Step& step)
 {
+  if (this->internals_->record.cornersPerCell == kTriangleCorners)
+  {
+    this->appendCells<kTriangleCorners>(step);
+  }
+  else
+  {
+    this->appendCells<kMostCorners>(step);
+  }
+}
+
+template <int Corners>
+void RecordBuilder::appendCells(const Step& step)
+{
   Internals& in = *this->internals_;
   Record& record = in.record;
 
   // Numbering by first appearance in the new cells makes equal patches equal shapes, and leaves the
   // nodes that no new cell has with the last numbers.
-  std::array<unsigned char, kMaximumPatchCells + 2>
-    local; // of a position in the ring; 0 = none yet
-  std::array<Index, kMaximumPatchCells + 2> extraNodes;
+  std::array<unsigned char, kMaximumLocals> local; // of a position in the ring; 0 = none yet
+  std::array<Index, kMaximumRing + 1> extraNodes;
   std::fill_n(local.begin(), step.ringSize + 1, static_cast<unsigned char>(0));
+  local[kNoLocal] = kNoLocal;
   unsigned char locals = 0;
   ShapeTable::Shape shape;
-  int size = 3 + kCorners * (step.oldCount + step.newCount);
+  int size = 3 + Corners * (step.oldCount + step.newCount);
   unsigned char* oldLocals = shape.data() + 3;
-  unsigned char* newLocals = oldLocals + kCorners * step.oldCount;
-  for (int i = 0; i < kCorners * step.newCount; ++i)
+  unsigned char* newLocals = oldLocals + Corners * step.oldCount;
+  for (int i = 0; i < Corners * step.newCount; ++i)
   {
     const int position = step.newCells[i];
     const bool known = local[position] != 0;
@@ -551,7 +598,7 @@ void RecordBuilder::append(const Step& step)
   int extra = 0;
   if (locals < step.ringSize)
   {
-    for (int i = 0; i < kCorners * step.oldCount; ++i)
+    for (int i = 0; i < Corners * step.oldCount; ++i)
     {
       const int position = step.oldCells[i];
       if (position != 0 && local[position] == 0)
@@ -561,7 +608,7 @@ void RecordBuilder::append(const Step& step)
       }
     }
   }
-  for (int i = 0; i < kCorners * step.oldCount; ++i)
+  for (int i = 0; i < Corners * step.oldCount; ++i)
   {
     oldLocals[i] = local[step.oldCells[i]]; // that of the removed node stays 0
   }
@@ -639,7 +686,7 @@ Record RecordBuilder::finish(const CornersOf& cornersOf, std::vector<Index>& bas
     freed = reverseChunk(freed, shape[0] - shape[1]);
     if (record.hasSources)
     {
-      lost = reverseChunk(lost, lostSourceCount(shape, kCorners));
+      lost = reverseChunk(lost, lostSourceCount(shape, record.cornersPerCell));
     }
   }
 
@@ -670,14 +717,15 @@ Record RecordBuilder::finish(const CornersOf& cornersOf, std::vector<Index>& bas
   }
   release(slots.position);
 
-  baseCells.resize(std::size_t{ kCorners } * record.baseCellCount);
+  const std::size_t corners = record.cornersPerCell;
+  baseCells.resize(corners * record.baseCellCount);
   for (Index slot = 0; slot < record.baseCellCount; ++slot)
   {
-    Index* corners = baseCells.data() + std::size_t{ kCorners } * slot;
-    cornersOf(record.cellOrder[slot], corners);
-    for (int corner = 0; corner < kCorners; ++corner)
+    Index* cell = baseCells.data() + corners * slot;
+    cornersOf(record.cellOrder[slot], cell);
+    for (std::size_t corner = 0; corner < corners; ++corner)
     {
-      corners[corner] = nodes.position[corners[corner]];
+      cell[corner] = cell[corner] == kNone ? kNone : nodes.position[cell[corner]];
     }
   }
   if (record.hasSources)

@@ -9,6 +9,10 @@
 /// changed. It does not say who wrote it: node removal, half-edge collapse and mixed meshes all
 /// write steps of this form.
 ///
+/// **Triangles and quads.** Records of triangle meshes have three corners a cell; those of mixed
+/// meshes have four, of which a triangle leaves the last one empty: kNone, in shapes kNoLocal. A
+/// quad may become a triangle in its slot, so there a step may keep the number of cells.
+///
 /// **Record order.** Nodes and cell slots are renumbered so that *every level is a prefix*: first
 /// the nodes (slots) of the coarsest level in their original order, then those that the steps bring
 /// back, in the order in which they come. Step j (0 <= j < stepCount) brings back node
@@ -47,6 +51,12 @@ namespace undecimate
 /// Largest number of old cells in a step; nodes with more cells are kept until they have fewer.
 constexpr int kMaximumPatchCells = 64;
 
+/// Largest number of other nodes in a step: quads have two of their own each.
+constexpr int kMaximumRing = 3 * kMaximumPatchCells;
+
+/// In shapes, the empty corner of a triangle among cells of four corners.
+constexpr unsigned char kNoLocal = 255;
+
 /// A record as flat arrays in somebody's memory (see the file comment for their meaning).
 ///
 /// The table of shapes: shape s is the bytes [shapeOffsets[s], shapeOffsets[s + 1]) of `shapes`:
@@ -65,7 +75,7 @@ struct RecordView
   Index baseCellCount = 0; ///< of the coarsest level
   Index stepCount = 0;     ///< nodeCount - baseNodeCount
   Index shapeCount = 0;
-  int cornersPerCell = 3;
+  int cornersPerCell = 3;  ///< 3, or 4 in meshes that have quads
   bool hasSources = false; ///< the source of each cell's values is recorded
 
   const Index* nodeOrder = nullptr;  ///< nodeCount: original number of a node
@@ -120,9 +130,12 @@ Outcome validateRecord(const RecordView& record, const Index* baseCells,
 class RecordBuilder
 {
 public:
-  /// @param trackSources also record from which original cell each new cell takes its values
+  /// @param trackSources also record from which original cell each new cell takes its values;
+  /// without, a cell has those of the cell whose slot it has
   /// @param plannedSteps room for so many is set aside; more or fewer are right, too
-  RecordBuilder(Index nodeCount, Index cellCount, bool trackSources, Index plannedSteps = 0);
+  /// @param cornersPerCell 3 or 4
+  RecordBuilder(Index nodeCount, Index cellCount, bool trackSources, Index plannedSteps = 0,
+    int cornersPerCell = 3);
   ~RecordBuilder();
 
   /// One step. Cells are given by the positions of their corners in the ring of the node: 0 is the
@@ -131,12 +144,13 @@ public:
   {
     Index node = kNone;                      ///< the removed node
     const Index* ring = nullptr;             ///< ringSize nodes of the patch, original numbers
-    int ringSize = 0;                        ///< at most kMaximumPatchCells + 1
+    int ringSize = 0;                        ///< at most kMaximumRing
     int oldCount = 0;                        ///< 1 .. kMaximumPatchCells
-    int newCount = 0;                        ///< < oldCount
+    int newCount = 0;                        ///< < oldCount; with four corners <= oldCount
     const Index* slots = nullptr;            ///< oldCount; the new cells take the first newCount
-    const unsigned char* oldCells = nullptr; ///< 3 * oldCount, as the corners stand in the slots
-    const unsigned char* newCells = nullptr; ///< 3 * newCount
+    const unsigned char* oldCells = nullptr; ///< cornersPerCell * oldCount, as the corners stand in
+                                             ///< the slots; kNoLocal last in a triangle
+    const unsigned char* newCells = nullptr; ///< cornersPerCell * newCount
     const unsigned char* sources =
       nullptr;          ///< newCount, if tracked: old cell whose values it takes
     double error = 0.0; ///< of this step; the record keeps the largest so far
@@ -151,14 +165,17 @@ public:
   double error() const;
 
   /// Renumber everything to record order. The builder is empty afterwards.
-  /// @param[in] cornersOf void(cell, corners): the 3 corners of a cell as the last step left them
-  /// (original numbers); it is asked for the cells that are left
+  /// @param[in] cornersOf void(cell, corners): the cornersPerCell corners of a cell as the last
+  /// step left them (original numbers); it is asked for the cells that are left
   /// @param[out] baseCells the cells of the coarsest level, in record order
   /// Complexity: O(nodes + cells + record), in place but for the two orders.
   using CornersOf = std::function<void(Index cell, Index* corners)>;
   Record finish(const CornersOf& cornersOf, std::vector<Index>& baseCells);
 
 private:
+  template <int Corners>
+  void appendCells(const Step& step);
+
   struct Internals;
   std::unique_ptr<Internals> internals_;
 };

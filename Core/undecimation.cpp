@@ -17,9 +17,11 @@ namespace undecimate
 namespace
 {
 
-constexpr int kCorners = 3;
+constexpr int kTriangleCorners = 3;
+constexpr int kMixedCorners = 4;
 
 // A shape's parts (see RecordView).
+template <int Corners>
 struct Shape
 {
   int oldCount;
@@ -36,8 +38,8 @@ struct Shape
     this->newCount = bytes[1];
     this->extra = bytes[2];
     this->oldCells = bytes + 3;
-    this->newCells = this->oldCells + kCorners * this->oldCount;
-    this->sources = this->newCells + kCorners * this->newCount;
+    this->newCells = this->oldCells + Corners * this->oldCount;
+    this->sources = this->newCells + Corners * this->newCount;
   }
 };
 
@@ -79,34 +81,48 @@ Outcome Undecimation::check(
   {
     return o;
   }
-  this->cells_.resize(std::size_t{ kCorners } * record.cellCount);
+  this->cells_.resize(static_cast<std::size_t>(record.cornersPerCell) * record.cellCount);
   this->sources_.resize(record.hasSources ? record.cellCount : 0);
   this->record_ = record;
   this->standAtBase(baseCells);
   // Whether the steps fit together shows only when they are walked.
   const MonitorShare walk = progress.part(validation, 1.0);
-  while (this->steps_ < record.stepCount)
+  if (Outcome o = record.cornersPerCell == kTriangleCorners ? this->walkAll<kTriangleCorners>(walk)
+                                                            : this->walkAll<kMixedCorners>(walk);
+      !o)
   {
-    if (!walk.updateAt(this->steps_, record.stepCount))
-    {
-      return { Status::Cancelled, "Cancelled." };
-    }
-    if (!this->isNextStepSound())
-    {
-      return { Status::InvalidRecord,
-        "Record array 'Patches' is damaged: step " + std::to_string(this->steps_) +
-          " does not fit the cells of its level." };
-    }
-    this->refine();
+    return o;
   }
   this->standAtBase(baseCells);
   return walk.update(1.0) ? Outcome{} : Outcome{ Status::Cancelled, "Cancelled." };
 }
 
+// Undo all steps, as far as they fit together.
+template <int Corners>
+Outcome Undecimation::walkAll(const MonitorShare& walk)
+{
+  while (this->steps_ < this->record_.stepCount)
+  {
+    if (!walk.updateAt(this->steps_, this->record_.stepCount))
+    {
+      return { Status::Cancelled, "Cancelled." };
+    }
+    if (!this->isNextStepSound<Corners>())
+    {
+      return { Status::InvalidRecord,
+        "Record array 'Patches' is damaged: step " + std::to_string(this->steps_) +
+          " does not fit the cells of its level." };
+    }
+    this->refine<Corners>();
+  }
+  return {};
+}
+
 void Undecimation::standAtBase(const Index* baseCells)
 {
-  std::copy_n(
-    baseCells, std::size_t{ kCorners } * this->record_.baseCellCount, this->cells_.begin());
+  std::copy_n(baseCells,
+    static_cast<std::size_t>(this->record_.cornersPerCell) * this->record_.baseCellCount,
+    this->cells_.begin());
   if (this->record_.hasSources)
   {
     std::copy_n(this->record_.baseSources, this->record_.baseCellCount, this->sources_.begin());
@@ -119,26 +135,29 @@ void Undecimation::standAtBase(const Index* baseCells)
 
 // Whether all new cells of the next step agree on what node a local number is. If they do not,
 // coarsen() would not undo refine(), and nodes could stay in levels that do not have them.
+template <int Corners>
 bool Undecimation::isNextStepSound() const
 {
-  const Shape shape(this->record_, this->steps_);
+  const Shape<Corners> shape(this->record_, this->steps_);
   const Index* slots = this->record_.patches + this->patchPosition_;
   const Index* cells = this->cells_.data();
   Index locals[256];
   for (int i = 0; i < shape.newCount; ++i)
   {
-    const Index* cell = cells + std::size_t{ kCorners } * slots[i];
-    for (int corner = 0; corner < kCorners; ++corner)
+    const Index* cell = cells + std::size_t{ Corners } * slots[i];
+    for (int corner = 0; corner < Corners; ++corner)
     {
-      locals[shape.newCells[kCorners * i + corner]] = cell[corner];
+      locals[shape.newCells[Corners * i + corner]] = cell[corner];
     }
   }
   for (int i = 0; i < shape.newCount; ++i)
   {
-    const Index* cell = cells + std::size_t{ kCorners } * slots[i];
-    for (int corner = 0; corner < kCorners; ++corner)
+    const Index* cell = cells + std::size_t{ Corners } * slots[i];
+    for (int corner = 0; corner < Corners; ++corner)
     {
-      if (locals[shape.newCells[kCorners * i + corner]] != cell[corner])
+      const int local = shape.newCells[Corners * i + corner];
+      if (locals[local] != cell[corner] ||
+        (Corners != kTriangleCorners && (local == kNoLocal) != (cell[corner] == kNone)))
       {
         return false;
       }
@@ -178,13 +197,26 @@ bool Undecimation::moveTo(Index steps, Monitor* monitor)
 
 void Undecimation::walkTo(Index goal)
 {
+  if (this->record_.cornersPerCell == kTriangleCorners)
+  {
+    this->walk<kTriangleCorners>(goal);
+  }
+  else
+  {
+    this->walk<kMixedCorners>(goal);
+  }
+}
+
+template <int Corners>
+void Undecimation::walk(Index goal)
+{
   while (this->steps_ < goal)
   {
-    this->refine();
+    this->refine<Corners>();
   }
   while (this->steps_ > goal)
   {
-    this->coarsen();
+    this->coarsen<Corners>();
   }
 }
 
@@ -211,22 +243,27 @@ double Undecimation::error() const
 }
 
 // Bring node baseNodeCount + steps_ back: old cells take the place of the new ones.
+template <int Corners>
 void Undecimation::refine()
 {
-  const Shape shape(this->record_, this->steps_);
+  const Shape<Corners> shape(this->record_, this->steps_);
   const Index* slots = this->record_.patches + this->patchPosition_;
   Index* cells = this->cells_.data();
   Index locals[256];
+  locals[kNoLocal] = kNone;
   locals[0] = this->record_.baseNodeCount + this->steps_;
   int largest = 0;
   for (int i = 0; i < shape.newCount; ++i)
   {
-    const Index* cell = cells + std::size_t{ kCorners } * slots[i];
-    for (int corner = 0; corner < kCorners; ++corner)
+    const Index* cell = cells + std::size_t{ Corners } * slots[i];
+    for (int corner = 0; corner < Corners; ++corner)
     {
-      const int local = shape.newCells[kCorners * i + corner];
+      const int local = shape.newCells[Corners * i + corner];
       locals[local] = cell[corner];
-      largest = std::max(largest, local);
+      if (Corners == kTriangleCorners || local != kNoLocal)
+      {
+        largest = std::max(largest, local);
+      }
     }
   }
   for (int i = 0; i < shape.extra; ++i)
@@ -236,10 +273,10 @@ void Undecimation::refine()
   for (int i = 0; i < shape.oldCount; ++i)
   {
     const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
-    Index* cell = cells + std::size_t{ kCorners } * slot;
-    for (int corner = 0; corner < kCorners; ++corner)
+    Index* cell = cells + std::size_t{ Corners } * slot;
+    for (int corner = 0; corner < Corners; ++corner)
     {
-      cell[corner] = locals[shape.oldCells[kCorners * i + corner]];
+      cell[corner] = locals[shape.oldCells[Corners * i + corner]];
     }
   }
   if (this->record_.hasSources)
@@ -263,30 +300,32 @@ void Undecimation::refine()
 }
 
 // The reverse of refine().
+template <int Corners>
 void Undecimation::coarsen()
 {
   --this->steps_;
-  const Shape shape(this->record_, this->steps_);
+  const Shape<Corners> shape(this->record_, this->steps_);
   this->patchPosition_ -= shape.newCount + shape.extra;
   this->cellCount_ -= shape.oldCount - shape.newCount;
   const Index* slots = this->record_.patches + this->patchPosition_;
   Index* cells = this->cells_.data();
   Index locals[256];
+  locals[kNoLocal] = kNone;
   for (int i = 0; i < shape.oldCount; ++i)
   {
     const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
-    const Index* cell = cells + std::size_t{ kCorners } * slot;
-    for (int corner = 0; corner < kCorners; ++corner)
+    const Index* cell = cells + std::size_t{ Corners } * slot;
+    for (int corner = 0; corner < Corners; ++corner)
     {
-      locals[shape.oldCells[kCorners * i + corner]] = cell[corner];
+      locals[shape.oldCells[Corners * i + corner]] = cell[corner];
     }
   }
   for (int i = 0; i < shape.newCount; ++i)
   {
-    Index* cell = cells + std::size_t{ kCorners } * slots[i];
-    for (int corner = 0; corner < kCorners; ++corner)
+    Index* cell = cells + std::size_t{ Corners } * slots[i];
+    for (int corner = 0; corner < Corners; ++corner)
     {
-      cell[corner] = locals[shape.newCells[kCorners * i + corner]];
+      cell[corner] = locals[shape.newCells[Corners * i + corner]];
     }
   }
   if (this->record_.hasSources)

@@ -21,7 +21,8 @@ namespace undecimate
 /// A cursor on a record. Step count k in [0, stepCount]: 0 is the coarsest level (level 0),
 /// stepCount the original mesh (level 1). All numbers that it hands out are in record order.
 ///
-/// Memory: 12 bytes a triangle of the original mesh, 4 more if sources are recorded.
+/// Memory: 4 bytes a corner of the original cells (12 bytes a triangle, in mixed meshes 16 bytes a
+/// cell), 4 bytes a cell more if sources are recorded.
 class Undecimation
 {
 public:
@@ -56,7 +57,8 @@ public:
   /// Error of the current level as the record has it; 0 at level 1.
   double error() const;
 
-  /// cornersPerCell * cellCount() node numbers of the current level; valid until the next move.
+  /// cornersPerCell * cellCount() node numbers of the current level, kNone at the empty corner of a
+  /// triangle among quads; valid until the next move.
   const Index* cells() const { return this->cells_.data(); }
 
   /// Original number of the cell whose values each cell shows; null if the record has no sources
@@ -72,9 +74,16 @@ private:
   Outcome check(const RecordView& record, const Index* baseCells, const MonitorShare& progress);
   void walkTo(Index goal);
   void standAtBase(const Index* baseCells);
+  template <int Corners>
   bool isNextStepSound() const;
+  template <int Corners>
   void refine();
+  template <int Corners>
   void coarsen();
+  template <int Corners>
+  void walk(Index goal);
+  template <int Corners>
+  Outcome walkAll(const MonitorShare& walk);
 
   RecordView record_;
   std::vector<Index> cells_;

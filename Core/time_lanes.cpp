@@ -1,0 +1,503 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "time_lanes.h"
+
+#include <cmath>
+#include <limits>
+
+// One binary runs everywhere and uses wider vectors where there are some. Fused multiply-add stays
+// off, so that results do not depend on the machine.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__)
+#define UNDECIMATE_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define UNDECIMATE_VECTOR_CLONES
+#endif
+
+// Into the clones of the caller.
+#if defined(__GNUC__)
+#define UNDECIMATE_INLINE inline __attribute__((always_inline))
+#else
+#define UNDECIMATE_INLINE inline
+#endif
+
+namespace undecimate
+{
+
+namespace
+{
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+UNDECIMATE_INLINE float larger(float a, float b)
+{
+  return a > b ? a : b;
+}
+UNDECIMATE_INLINE float smaller(float a, float b)
+{
+  return a < b ? a : b;
+}
+
+struct V
+{
+  float x;
+  float y;
+  float z;
+};
+
+UNDECIMATE_INLINE V operator-(const V& a, const V& b)
+{
+  return { a.x - b.x, a.y - b.y, a.z - b.z };
+}
+UNDECIMATE_INLINE V operator+(const V& a, const V& b)
+{
+  return { a.x + b.x, a.y + b.y, a.z + b.z };
+}
+UNDECIMATE_INLINE V operator*(float s, const V& a)
+{
+  return { s * a.x, s * a.y, s * a.z };
+}
+UNDECIMATE_INLINE float dot(const V& a, const V& b)
+{
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+UNDECIMATE_INLINE V cross(const V& a, const V& b)
+{
+  return { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
+}
+UNDECIMATE_INLINE V at(const float* rows, int lanes, int i)
+{
+  return { rows[i], rows[lanes + i], rows[2 * lanes + i] };
+}
+UNDECIMATE_INLINE void put(const V& v, float* rows, int lanes, int i)
+{
+  rows[i] = v.x;
+  rows[lanes + i] = v.y;
+  rows[2 * lanes + i] = v.z;
+}
+// 1 / length, 0 of nothing.
+UNDECIMATE_INLINE float inverseLength(const V& v)
+{
+  const float square = dot(v, v);
+  return square > 0.0F ? 1.0F / std::sqrt(square) : 0.0F;
+}
+
+// Rows of a prepared triangle. Of each edge: direction, its start along it, the direction inwards,
+// the edge's place along that, its length.
+constexpr int kEdgeRows = 9;
+constexpr int kAlong = 0;
+constexpr int kStart = 3;
+constexpr int kInwards = 4;
+constexpr int kSide = 7;
+constexpr int kLength = 8;
+constexpr int kNormalRow = 3 * kEdgeRows;
+constexpr int kHeight = kNormalRow + 3;
+constexpr int kFar = kHeight + 1;
+static_assert(kFar + 1 == kTriangleRows, "");
+
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+void prepareTriangle(int lanes, const float* __restrict__ a, const float* __restrict__ b,
+  const float* __restrict__ c, float* __restrict__ triangle)
+{
+  float* __restrict__ normalRows = triangle + kNormalRow * lanes;
+  for (int i = 0; i < lanes; ++i)
+  {
+    const V p = at(a, lanes, i);
+    const V full = cross(at(b, lanes, i) - p, at(c, lanes, i) - p);
+    const float inverse = inverseLength(full);
+    const V normal = inverse * full;
+    put(normal, normalRows, lanes, i);
+    triangle[kHeight * lanes + i] = dot(normal, p);
+    triangle[kFar * lanes + i] = inverse > 0.0F ? 0.0F : kInfinity;
+  }
+  const float* const from[3] = { a, b, c };
+  const float* const to[3] = { b, c, a };
+  for (int k = 0; k < 3; ++k)
+  {
+    const float* __restrict__ f = from[k];
+    const float* __restrict__ t = to[k];
+    float* __restrict__ edge = triangle + k * kEdgeRows * lanes;
+    for (int i = 0; i < lanes; ++i)
+    {
+      const V start = at(f, lanes, i);
+      const V full = at(t, lanes, i) - start;
+      const float inverse = inverseLength(full);
+      const V along = inverse * full;
+      const V inwards = cross(at(normalRows, lanes, i), along);
+      put(along, edge + kAlong * lanes, lanes, i);
+      edge[kStart * lanes + i] = dot(along, start);
+      put(inwards, edge + kInwards * lanes, lanes, i);
+      edge[kSide * lanes + i] = dot(inwards, start);
+      edge[kLength * lanes + i] = dot(along, full);
+    }
+  }
+}
+
+namespace
+{
+
+// Squared distance within the plane to an edge, and the side of it.
+UNDECIMATE_INLINE float edgeSquare(const float* edge, int lanes, int i, const V& p, float& side)
+{
+  side = dot(at(edge + kInwards * lanes, lanes, i), p) - edge[kSide * lanes + i];
+  const float along = dot(at(edge + kAlong * lanes, lanes, i), p) - edge[kStart * lanes + i];
+  const float excess = larger(larger(-along, along - edge[kLength * lanes + i]), 0.0F);
+  return side * side + excess * excess;
+}
+
+UNDECIMATE_INLINE float squaredDistance(
+  const float* triangle, int lanes, int i, const V& p, float* sides)
+{
+  const float* const second = triangle + kEdgeRows * lanes;
+  const float square0 = edgeSquare(triangle, lanes, i, p, sides[0]);
+  const float square1 = edgeSquare(second, lanes, i, p, sides[1]);
+  const float square2 = edgeSquare(second + kEdgeRows * lanes, lanes, i, p, sides[2]);
+  const float outside = smaller(smaller(square0, square1), square2);
+  const float inmost = smaller(smaller(sides[0], sides[1]), sides[2]);
+  const float height =
+    dot(at(triangle + kNormalRow * lanes, lanes, i), p) - triangle[kHeight * lanes + i];
+  return (inmost >= 0.0F ? 0.0F : outside) + height * height + triangle[kFar * lanes + i];
+}
+
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+void minimumDistances(int lanes, const float* __restrict__ triangle,
+  const float* __restrict__ point, float* __restrict__ squares)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    float sides[3];
+    const float square = squaredDistance(triangle, lanes, i, at(point, lanes, i), sides);
+    squares[i] = smaller(squares[i], square);
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void minimumDistances(int lanes, const float* __restrict__ triangle,
+  const float* __restrict__ point, const LaneValues* arrays, int arrayCount,
+  float* __restrict__ squares, float* __restrict__ errors)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    float sides[3];
+    const float square = squaredDistance(triangle, lanes, i, at(point, lanes, i), sides);
+    if (!(square < squares[i]))
+    {
+      continue;
+    }
+    squares[i] = square;
+    // The weight of a corner is the distance from the opposite edge, beyond it 0, of all three.
+    float weights[3];
+    float sum = 0.0F;
+    for (int k = 0; k < 3; ++k)
+    {
+      const int opposite = (k + 1) % 3;
+      weights[k] =
+        larger(sides[opposite], 0.0F) * triangle[(opposite * kEdgeRows + kLength) * lanes + i];
+      sum += weights[k];
+    }
+    const float inverse = sum > 0.0F ? 1.0F / sum : 0.0F;
+    float error = 0.0F;
+    for (int n = 0; n < arrayCount; ++n)
+    {
+      const LaneValues& array = arrays[n];
+      float total = 0.0F;
+      for (int c = 0; c < array.components; ++c)
+      {
+        const int j = c * lanes + i;
+        const float value = inverse *
+          (weights[0] * array.corners[0][j] + weights[1] * array.corners[1][j] +
+            weights[2] * array.corners[2][j]);
+        const float difference = array.scale * (value - array.point[j]);
+        total += difference * difference;
+      }
+      error = larger(error, total);
+    }
+    errors[i] = error;
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void maximumDistanceToEdge(int lanes, const float* __restrict__ a, const float* __restrict__ b,
+  const float* __restrict__ point, float* __restrict__ squares)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    const V start = at(a, lanes, i);
+    const V full = at(b, lanes, i) - start;
+    const V offset = at(point, lanes, i) - start;
+    const float square = dot(full, full);
+    const float fraction = square > 0.0F ? dot(offset, full) / square : 0.0F;
+    const float clamped = smaller(larger(fraction, 0.0F), 1.0F);
+    const V rest = offset - clamped * full;
+    squares[i] = larger(squares[i], dot(rest, rest));
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void subtract(int lanes, int rows, const float* __restrict__ a, const float* __restrict__ b,
+  float* __restrict__ difference)
+{
+  for (int i = 0; i < rows * lanes; ++i)
+  {
+    difference[i] = a[i] - b[i];
+  }
+}
+
+void middle(
+  int lanes, const float* __restrict__ a, const float* __restrict__ b, float* __restrict__ mean)
+{
+  for (int i = 0; i < 3 * lanes; ++i)
+  {
+    mean[i] = 0.5F * (a[i] + b[i]);
+  }
+}
+
+void center(int lanes, int rows, const float* __restrict__ a, const float* __restrict__ b,
+  const float* __restrict__ c, const float* __restrict__ d, float* __restrict__ mean)
+{
+  for (int i = 0; i < rows * lanes; ++i)
+  {
+    mean[i] = 0.25F * ((a[i] + b[i]) + (c[i] + d[i]));
+  }
+}
+
+void raise(int lanes, const float* __restrict__ from, float* __restrict__ to)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    to[i] = larger(to[i], from[i]);
+  }
+}
+
+void lower(int lanes, const float* __restrict__ from, float* __restrict__ to)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    to[i] = smaller(to[i], from[i]);
+  }
+}
+
+float largest(int lanes, const float* row)
+{
+  // Four chains at a time.
+  float most[4] = { row[0], row[1], row[2], row[3] };
+  for (int i = 4; i < lanes; i += 4)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      most[k] = larger(most[k], row[i + k]);
+    }
+  }
+  return larger(larger(most[0], most[1]), larger(most[2], most[3]));
+}
+
+namespace
+{
+
+// Twice the normal of the whole cell: of a quad the cross product of its diagonals.
+UNDECIMATE_INLINE V cellNormal(const float* const* corners, int count, int lanes, int i)
+{
+  const V a = at(corners[0], lanes, i);
+  const V c = at(corners[2], lanes, i);
+  if (count == 3)
+  {
+    return cross(at(corners[1], lanes, i) - a, c - a);
+  }
+  return cross(c - a, at(corners[3], lanes, i) - at(corners[1], lanes, i));
+}
+
+// What makes a cell bad beside a normal: the triangle of a corner is a needle, or a quad's corner
+// points inwards.
+UNDECIMATE_INLINE bool isBadCell(
+  const float* const* corners, int count, int lanes, int i, const V& normal)
+{
+  bool bad = false;
+  for (int k = 0; k < count; ++k)
+  {
+    const V p = at(corners[k], lanes, i);
+    const V next = at(corners[k + 1 == count ? 0 : k + 1], lanes, i) - p;
+    const V previous = at(corners[k == 0 ? count - 1 : k - 1], lanes, i) - p;
+    const V corner = cross(next, previous);
+    const V across = next - previous;
+    const float edges = dot(next, next) + dot(previous, previous) + dot(across, across);
+    const float limit = kMinimumCellShape * edges;
+    bad |= !(12.0F * dot(corner, corner) > limit * limit);
+    bad |= !(dot(corner, normal) > 0.0F);
+    if (count == 3)
+    {
+      break;
+    }
+  }
+  return bad;
+}
+
+template <int OldCount, int NewCount>
+UNDECIMATE_INLINE int countBad(
+  int lanes, const float* const* oldCorners, const float* const* newCorners)
+{
+  int badLanes = 0;
+  for (int i = 0; i < lanes; ++i)
+  {
+    const V before = cellNormal(oldCorners, OldCount, lanes, i);
+    const V now = cellNormal(newCorners, NewCount, lanes, i);
+    const float both = dot(before, now);
+    const float squares = dot(before, before) * dot(now, now);
+    const bool turns = !(both > 0.0F && both * both > kMinimumCosine * kMinimumCosine * squares);
+    const bool worse = isBadCell(newCorners, NewCount, lanes, i, now) &&
+      !isBadCell(oldCorners, OldCount, lanes, i, before);
+    badLanes += dot(before, before) > 0.0F && (turns || worse);
+  }
+  return badLanes;
+}
+
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+bool mayReplaceCell(int lanes, const float* const* oldCorners, int oldCount,
+  const float* const* newCorners, int newCount)
+{
+  if (oldCount == 3)
+  {
+    return countBad<3, 3>(lanes, oldCorners, newCorners) == 0;
+  }
+  if (newCount == 3)
+  {
+    return countBad<4, 3>(lanes, oldCorners, newCorners) == 0;
+  }
+  return countBad<4, 4>(lanes, oldCorners, newCorners) == 0;
+}
+
+namespace
+{
+
+// The quadric of a plane, at a place that is so far above it.
+UNDECIMATE_INLINE void addPlane(
+  float* quadric, int lanes, int i, const V& normal, float height, float weight)
+{
+  const float values[kQuadricRows] = { normal.x * normal.x, normal.x * normal.y,
+    normal.x * normal.z, normal.y * normal.y, normal.y * normal.z, normal.z * normal.z,
+    normal.x * height, normal.y * height, normal.z * height, height * height, 1.0F };
+  for (int row = 0; row < kQuadricRows; ++row)
+  {
+    quadric[row * lanes + i] += weight * values[row];
+  }
+}
+
+// The unit normal of a cell as [W06] has it, and its area.
+template <int Count>
+UNDECIMATE_INLINE V meanNormal(const float* const* corners, int lanes, int i, float& area)
+{
+  V sum{ 0.0F, 0.0F, 0.0F };
+  for (int k = 0; k < (Count == 3 ? 1 : Count); ++k)
+  {
+    const V p = at(corners[k], lanes, i);
+    const V next = at(corners[(k + 1) % Count], lanes, i) - p;
+    const V corner = cross(next, at(corners[(k + Count - 1) % Count], lanes, i) - p);
+    sum = sum + inverseLength(corner) * corner;
+  }
+  const V whole = cellNormal(corners, Count, lanes, i);
+  area = 0.5F * std::sqrt(dot(whole, whole));
+  return inverseLength(sum) * sum;
+}
+
+template <int Count>
+UNDECIMATE_INLINE void addCell(int lanes, const float* const* corners, float* const* quadrics)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    float area;
+    const V normal = meanNormal<Count>(corners, lanes, i, area);
+    V middle = at(corners[0], lanes, i);
+    for (int k = 1; k < Count; ++k)
+    {
+      middle = middle + at(corners[k], lanes, i);
+    }
+    middle = (1.0F / Count) * middle;
+    for (int k = 0; k < Count; ++k)
+    {
+      addPlane(quadrics[k], lanes, i, normal, dot(normal, at(corners[k], lanes, i) - middle), area);
+    }
+  }
+}
+
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+void addCellQuadrics(int lanes, const float* const* corners, int count, float* const* quadrics)
+{
+  if (count == 3)
+  {
+    addCell<3>(lanes, corners, quadrics);
+  }
+  else
+  {
+    addCell<4>(lanes, corners, quadrics);
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void addBoundaryQuadrics(
+  int lanes, const float* const* corners, int count, int edge, float weight, float* const* quadrics)
+{
+  const int end = edge + 1 == count ? 0 : edge + 1;
+  for (int i = 0; i < lanes; ++i)
+  {
+    const V along = at(corners[end], lanes, i) - at(corners[edge], lanes, i);
+    const V whole = cellNormal(corners, count, lanes, i);
+    const V across = cross(whole, along);
+    const V normal = inverseLength(across) * across;
+    const float area = weight * dot(along, along);
+    addPlane(quadrics[edge], lanes, i, normal, 0.0F, area);
+    addPlane(quadrics[end], lanes, i, normal, 0.0F, area);
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void quadricValues(int lanes, const float* __restrict__ quadric, const float* __restrict__ d,
+  float* __restrict__ squares)
+{
+  const float* const q = quadric;
+  const int n = lanes;
+  for (int i = 0; i < lanes; ++i)
+  {
+    const V p = at(d, lanes, i);
+    const float ax = q[i] * p.x + q[n + i] * p.y + q[2 * n + i] * p.z;
+    const float ay = q[n + i] * p.x + q[3 * n + i] * p.y + q[4 * n + i] * p.z;
+    const float az = q[2 * n + i] * p.x + q[4 * n + i] * p.y + q[5 * n + i] * p.z;
+    const float value = (ax + 2.0F * q[6 * n + i]) * p.x + (ay + 2.0F * q[7 * n + i]) * p.y +
+      (az + 2.0F * q[8 * n + i]) * p.z + q[9 * n + i];
+    squares[i] = larger(value, 0.0F);
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void mergeQuadric(
+  int lanes, const float* __restrict__ from, const float* __restrict__ d, float* __restrict__ to)
+{
+  const float* const q = from;
+  const int n = lanes;
+  for (int i = 0; i < lanes; ++i)
+  {
+    const V p = at(d, lanes, i);
+    const float ax = q[i] * p.x + q[n + i] * p.y + q[2 * n + i] * p.z;
+    const float ay = q[n + i] * p.x + q[3 * n + i] * p.y + q[4 * n + i] * p.z;
+    const float az = q[2 * n + i] * p.x + q[4 * n + i] * p.y + q[5 * n + i] * p.z;
+    const float value = (ax + 2.0F * q[6 * n + i]) * p.x + (ay + 2.0F * q[7 * n + i]) * p.y +
+      (az + 2.0F * q[8 * n + i]) * p.z + q[9 * n + i];
+    for (int row = 0; row < 6; ++row)
+    {
+      to[row * n + i] += q[row * n + i];
+    }
+    to[6 * n + i] += q[6 * n + i] + ax;
+    to[7 * n + i] += q[7 * n + i] + ay;
+    to[8 * n + i] += q[8 * n + i] + az;
+    to[9 * n + i] += larger(value, 0.0F);
+    to[10 * n + i] += q[10 * n + i];
+  }
+}
+
+} // namespace undecimate

@@ -1,0 +1,886 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tri_quad_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace undecimate
+{
+
+namespace
+{
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Weight of a boundary edge's plane against that of a cell as large as the edge's square.
+constexpr float kBoundaryWeight = 1.0F;
+
+std::uint64_t lineKey(Index a, Index b)
+{
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+    static_cast<std::uint32_t>(std::max(a, b));
+}
+
+// The corners of a cell that has some; pointers to their rows.
+template <typename RowsOf>
+int cornerRows(const unsigned char* cell, const float** rows, RowsOf&& rowsOf)
+{
+  int count = 0;
+  for (int k = 0; k < kTriQuadCorners; ++k)
+  {
+    if (cell[k] != kNoLocal)
+    {
+      rows[count++] = rowsOf(cell[k]);
+    }
+  }
+  return count;
+}
+
+} // namespace
+
+int TriQuadPatch::newCell(int cell, unsigned char to, std::array<unsigned char, 4>& corners) const
+{
+  corners = this->cells[cell];
+  const bool both = std::find(corners.begin(), corners.end(), to) != corners.end();
+  const bool triangle = std::find(corners.begin(), corners.end(), kNoLocal) != corners.end();
+  *std::find(corners.begin(), corners.end(), static_cast<unsigned char>(0)) = both ? kNoLocal : to;
+  return both ? (triangle ? 0 : 3) : (triangle ? 3 : 4);
+}
+
+int TriQuadPatch::quadsLost(unsigned char to) const
+{
+  int lost = 0;
+  for (int i = 0; i < this->cellCount; ++i)
+  {
+    const auto& cell = this->cells[i];
+    lost += std::find(cell.begin(), cell.end(), to) != cell.end() &&
+      std::find(cell.begin(), cell.end(), kNoLocal) == cell.end();
+  }
+  return lost;
+}
+
+bool TriQuadPatch::hasTwins(unsigned char to) const
+{
+  for (int i = 0; i < this->cellCount; ++i)
+  {
+    std::array<unsigned char, 4> cell;
+    const bool stays = this->newCell(i, to, cell) != 0;
+    std::sort(cell.begin(), cell.end());
+    for (int j = i + 1; j < this->cellCount && stays; ++j)
+    {
+      std::array<unsigned char, 4> other;
+      if (this->fanOf[j] != this->fanOf[i] && this->newCell(j, to, other) != 0)
+      {
+        std::sort(other.begin(), other.end());
+        if (other == cell)
+        {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+TriQuadCost::TriQuadCost(TriQuadTopology& topology, const TimeRows& positions,
+  const TriQuadDecimationOptions& options, std::vector<unsigned char>& kept)
+  : topology_(topology)
+  , positions_(positions)
+  , options_(options)
+  , kept_(kept)
+  , lanes_(positions.lanes())
+{
+  this->arrayOffsets_.push_back(0);
+  const bool steer = options.criterion == TriQuadCriterion::Deviation && options.scalarWeight > 0.0;
+  for (std::size_t n = 0; steer && n < options.arrays.size(); ++n)
+  {
+    const TimeRows& rows = *options.arrays[n].rows;
+    std::array<float, TimeRows::kMaximumComponents> low;
+    std::array<float, TimeRows::kMaximumComponents> high;
+    low.fill(kInfinity);
+    high.fill(-kInfinity);
+    for (Index node = 0; node < rows.nodeCount(); ++node)
+    {
+      const float* row = rows.at(node);
+      for (int c = 0; c < rows.components() && rows.isFinite(node); ++c, row += this->lanes_)
+      {
+        low[c] = std::min(low[c], *std::min_element(row, row + rows.steps()));
+        high[c] = std::max(high[c], *std::max_element(row, row + rows.steps()));
+      }
+    }
+    double square = 0.0;
+    for (int c = 0; c < rows.components(); ++c)
+    {
+      const double size = low[c] <= high[c] ? static_cast<double>(high[c]) - low[c] : 0.0;
+      square += size * size;
+    }
+    this->arrayScales_.push_back(
+      square > 0.0 ? static_cast<float>(options.scalarWeight / std::sqrt(square)) : 0.0F);
+    this->arrayOffsets_.push_back(this->arrayOffsets_.back() + rows.components());
+  }
+  this->laneValues_.resize(this->arrayScales_.size());
+
+  // A cell with an undefined node cannot be measured, so it never changes.
+  const auto isDefined = [&](Index node)
+  {
+    bool defined = positions.isFinite(node);
+    for (std::size_t n = 0; n < this->arrayScales_.size(); ++n)
+    {
+      defined = defined && options.arrays[n].rows->isFinite(node);
+    }
+    return defined;
+  };
+  for (Index slot = 0; slot < topology.cellCount(); ++slot)
+  {
+    const Index* cell = topology.cell(slot);
+    const bool defined = std::all_of(cell, cell + kTriQuadCorners,
+      [&](Index copy) { return copy == kNone || isDefined(topology.nodeOf(copy)); });
+    for (int k = 0; !defined && k < kTriQuadCorners; ++k)
+    {
+      if (cell[k] != kNone)
+      {
+        kept[topology.nodeOf(cell[k])] = 1;
+      }
+    }
+  }
+
+  if (options.criterion == TriQuadCriterion::Deviation)
+  {
+    this->firstRemoved_.assign(topology.cellCount(), kNone);
+    this->nextRemoved_.assign(topology.copyCount(), kNone);
+    this->nextOnLine_.assign(topology.nodeCount(), kNone);
+  }
+  const std::size_t lanes = this->lanes_;
+  this->relative_.resize(3 * lanes * (kMaximumRing + 1));
+  this->point_.resize(3 * lanes);
+  this->nearest_.resize(lanes);
+  this->cellNearest_.resize(lanes);
+  this->errors_.resize(lanes);
+  this->squares_.resize(lanes);
+  this->buildQuadrics();
+}
+
+void TriQuadCost::buildQuadrics()
+{
+  const TriQuadTopology& t = this->topology_;
+  this->quadrics_.resize(std::size_t{ kQuadricRows } * this->lanes_ * t.nodeCount());
+  std::fill(this->quadrics_.begin(), this->quadrics_.end(), 0.0F);
+  Fan fan;
+  for (Index slot = 0; slot < t.cellCount(); ++slot)
+  {
+    const Index* cell = t.cell(slot);
+    const float* corners[kTriQuadCorners];
+    float* quadrics[kTriQuadCorners];
+    int count = 0;
+    for (int k = 0; k < kTriQuadCorners; ++k)
+    {
+      if (cell[k] != kNone)
+      {
+        corners[count] = this->positions_.at(t.nodeOf(cell[k]));
+        quadrics[count++] = this->quadric(t.nodeOf(cell[k]));
+      }
+    }
+    addCellQuadrics(this->lanes_, corners, count, quadrics);
+  }
+  for (Index copy = 0; copy < t.copyCount(); ++copy)
+  {
+    if (t.kind(t.nodeOf(copy)) == TriQuadNodeKind::Interior || !t.gather(copy, fan))
+    {
+      continue;
+    }
+    for (int i = 0; i < fan.neighbourCount; ++i)
+    {
+      // Each edge once, with its cell.
+      if (fan.edgeCells[i] != 1 || fan.neighbours[i] < copy)
+      {
+        continue;
+      }
+      for (int j = 0; j < fan.cellCount; ++j)
+      {
+        const Index* cell = t.cell(slotOf(fan.corners[j]));
+        const float* corners[kTriQuadCorners];
+        float* quadrics[kTriQuadCorners];
+        int count = 0;
+        int here = 0;
+        int there = -1;
+        for (int k = 0; k < kTriQuadCorners; ++k)
+        {
+          if (cell[k] != kNone)
+          {
+            here = cell[k] == copy ? count : here;
+            there = cell[k] == fan.neighbours[i] ? count : there;
+            corners[count] = this->positions_.at(t.nodeOf(cell[k]));
+            quadrics[count++] = this->quadric(t.nodeOf(cell[k]));
+          }
+        }
+        if (there >= 0)
+        {
+          const int edge = (here + 1) % count == there ? here : there;
+          addBoundaryQuadrics(this->lanes_, corners, count, edge, kBoundaryWeight, quadrics);
+          break;
+        }
+      }
+    }
+  }
+}
+
+void TriQuadCost::prefetch(Index node) const
+{
+  __builtin_prefetch(this->positions_.at(node));
+  __builtin_prefetch(this->quadrics_.data() + std::size_t{ kQuadricRows } * this->lanes_ * node);
+}
+
+// The cells around a node, with all its copies. False if it may not go anywhere.
+bool TriQuadCost::gather(Index node, TriQuadPatch& patch)
+{
+  const TriQuadTopology& t = this->topology_;
+  patch.node = node;
+  patch.fanCount = 0;
+  patch.cellCount = 0;
+  patch.ringSize = 0;
+  for (Index copy = node; copy != kNone; copy = t.nextCopy(copy))
+  {
+    if (patch.fanCount == TriQuadPatch::kMaximumFans)
+    {
+      return false;
+    }
+    Fan& fan = patch.fans[patch.fanCount];
+    if (!t.gather(copy, fan) || fan.cellCount == 0 ||
+      patch.cellCount + fan.cellCount > kMaximumPatchCells)
+    {
+      return false;
+    }
+    for (int i = 0; i < fan.cellCount; ++i)
+    {
+      patch.slots[patch.cellCount] = slotOf(fan.corners[i]);
+      patch.fanOf[patch.cellCount] = static_cast<unsigned char>(patch.fanCount);
+      const Index* cell = t.cell(slotOf(fan.corners[i]));
+      auto& locals = patch.cells[patch.cellCount++];
+      for (int k = 0; k < kTriQuadCorners; ++k)
+      {
+        if (cell[k] == kNone || cell[k] == copy)
+        {
+          locals[k] = cell[k] == kNone ? kNoLocal : 0;
+          continue;
+        }
+        const Index other = t.nodeOf(cell[k]);
+        const auto* end = patch.ring.begin() + patch.ringSize;
+        const auto* found = std::find(patch.ring.cbegin(), end, other);
+        if (found == end)
+        {
+          patch.ring[patch.ringSize++] = other;
+        }
+        locals[k] = static_cast<unsigned char>(found - patch.ring.cbegin() + 1);
+      }
+    }
+    ++patch.fanCount;
+  }
+  if (!this->findLine(patch))
+  {
+    return false;
+  }
+  const float* center = this->positions_.at(node);
+  std::fill_n(this->relative_.begin(), 3 * this->lanes_, 0.0F);
+  for (int i = 0; i < patch.ringSize; ++i)
+  {
+    subtract(this->lanes_, 3, this->positions_.at(patch.ring[i]), center,
+      this->relative_.data() + std::size_t{ 3 } * this->lanes_ * (i + 1));
+  }
+  return true;
+}
+
+// The two nodes beside it on the boundary. On a seam all sheets must have the same two.
+bool TriQuadCost::findLine(TriQuadPatch& patch) const
+{
+  patch.line[0] = 0;
+  patch.line[1] = 0;
+  for (int f = 0; f < patch.fanCount; ++f)
+  {
+    const Fan& fan = patch.fans[f];
+    if (!fan.boundary)
+    {
+      return patch.fanCount == 1;
+    }
+    unsigned char ends[2] = { 0, 0 };
+    int count = 0;
+    for (int i = 0; i < fan.neighbourCount; ++i)
+    {
+      if (fan.edgeCells[i] == 1 && count < 2)
+      {
+        const Index node = this->topology_.nodeOf(fan.neighbours[i]);
+        ends[count++] = static_cast<unsigned char>(
+          std::find(patch.ring.begin(), patch.ring.begin() + patch.ringSize, node) -
+          patch.ring.begin() + 1);
+      }
+    }
+    if (count != 2 || ends[0] == ends[1])
+    {
+      return false;
+    }
+    if (f == 0)
+    {
+      patch.line[0] = ends[0];
+      patch.line[1] = ends[1];
+    }
+    else if (std::minmax(ends[0], ends[1]) != std::minmax(patch.line[0], patch.line[1]))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The neighbours, best first by the quadrics.
+void TriQuadCost::rankTargets(const TriQuadPatch& patch)
+{
+  this->targetCount_ = 0;
+  const float* own = this->quadric(patch.node);
+  const auto add = [&](unsigned char local)
+  {
+    const Index node = patch.ring[local - 1];
+    if (this->topology_.kind(node) == TriQuadNodeKind::Irregular)
+    {
+      return;
+    }
+    float* squares = this->squares_.data();
+    quadricValues(this->lanes_, own, this->position(local), squares);
+    const float* other = this->quadric(node);
+    const int lanes = this->lanes_;
+    const bool distance = this->options_.criterion == TriQuadCriterion::Quadrics;
+    for (int i = 0; i < lanes; ++i)
+    {
+      squares[i] += other[9 * lanes + i];
+    }
+    double rank = this->combine(squares);
+    if (distance && this->options_.quadWeight > 0.0)
+    {
+      rank += this->options_.quadWeight * patch.quadsLost(local);
+    }
+    this->targets_[this->targetCount_++] = { local, rank };
+  };
+  if (patch.line[0] != 0)
+  {
+    add(patch.line[0]);
+    add(patch.line[1]);
+  }
+  else
+  {
+    const Fan& fan = patch.fans[0];
+    for (int i = 0; i < fan.neighbourCount; ++i)
+    {
+      const Index node = this->topology_.nodeOf(fan.neighbours[i]);
+      add(static_cast<unsigned char>(
+        std::find(patch.ring.begin(), patch.ring.begin() + patch.ringSize, node) -
+        patch.ring.begin() + 1));
+    }
+  }
+  std::stable_sort(this->targets_.begin(), this->targets_.begin() + this->targetCount_,
+    [](const Target& a, const Target& b) { return a.rank < b.rank; });
+}
+
+double TriQuadCost::combine(const float* squares) const
+{
+  const int steps = this->positions_.steps();
+  if (this->options_.timeError == TimeError::Maximum)
+  {
+    return std::sqrt(largest(this->lanes_, squares));
+  }
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i)
+  {
+    sum += squares[i];
+  }
+  return std::sqrt(sum / steps);
+}
+
+bool TriQuadCost::mayGo(TriQuadPatch& patch, unsigned char target)
+{
+  const Index node = patch.ring[target - 1];
+  for (int f = 0; f < patch.fanCount; ++f)
+  {
+    const Fan& fan = patch.fans[f];
+    Index copy = kNone;
+    for (int i = 0; i < fan.neighbourCount && copy == kNone; ++i)
+    {
+      if (this->topology_.nodeOf(fan.neighbours[i]) == node)
+      {
+        copy = fan.neighbours[i];
+      }
+    }
+    const auto* end = patch.targetCopies.begin() + f;
+    if (copy == kNone || std::find(patch.targetCopies.cbegin(), end, copy) != end ||
+      !this->topology_.mayCollapse(fan, copy))
+    {
+      return false;
+    }
+    patch.targetCopies[f] = copy;
+  }
+  return patch.fanCount == 1 || !patch.hasTwins(target);
+}
+
+bool TriQuadCost::keepsCells(const TriQuadPatch& patch, unsigned char target) const
+{
+  const auto rowsOf = [this](unsigned char local) { return this->position(local); };
+  for (int i = 0; i < patch.cellCount; ++i)
+  {
+    std::array<unsigned char, 4> cell;
+    if (patch.newCell(i, target, cell) == 0)
+    {
+      continue;
+    }
+    const float* before[kTriQuadCorners];
+    const float* now[kTriQuadCorners];
+    const int beforeCount = cornerRows(patch.cells[i].data(), before, rowsOf);
+    const int nowCount = cornerRows(cell.data(), now, rowsOf);
+    if (!mayReplaceCell(this->lanes_, before, beforeCount, now, nowCount))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+void TriQuadCost::Triangles::clear()
+{
+  this->corners.clear();
+  this->firsts.assign(1, 0);
+  this->centerCount = 0;
+}
+
+const float* TriQuadCost::cornerPosition(const Triangles& triangles, int corner) const
+{
+  return corner < kCenters
+    ? this->position(corner)
+    : triangles.centers.data() + std::size_t{ 3 } * this->lanes_ * (corner - kCenters);
+}
+
+void TriQuadCost::addCell(const unsigned char* cell, Triangles& triangles)
+{
+  const std::size_t lanes = this->lanes_;
+  int corners[kTriQuadCorners];
+  int count = 0;
+  for (int k = 0; k < kTriQuadCorners; ++k)
+  {
+    if (cell[k] != kNoLocal)
+    {
+      corners[count++] = cell[k];
+    }
+  }
+  if (count == 3)
+  {
+    triangles.corners.push_back({ corners[0], corners[1], corners[2] });
+  }
+  else if (count == 4)
+  {
+    const std::size_t number = triangles.centerCount++;
+    triangles.centers.resize(std::max(triangles.centers.size(), 3 * lanes * (number + 1)));
+    center(this->lanes_, 3, this->position(corners[0]), this->position(corners[1]),
+      this->position(corners[2]), this->position(corners[3]),
+      triangles.centers.data() + 3 * lanes * number);
+    for (int k = 0; k < 4; ++k)
+    {
+      triangles.corners.push_back(
+        { corners[k], corners[(k + 1) % 4], kCenters + static_cast<int>(number) });
+    }
+    const std::size_t rows = this->arrayOffsets_.back();
+    triangles.centerValues.resize(
+      std::max(triangles.centerValues.size(), rows * lanes * (number + 1)));
+    for (std::size_t n = 0; n < this->arrayScales_.size(); ++n)
+    {
+      const auto valuesOf = [&](int k) { return this->cornerValues(triangles, corners[k], n); };
+      center(this->lanes_, this->arrayOffsets_[n + 1] - this->arrayOffsets_[n], valuesOf(0),
+        valuesOf(1), valuesOf(2), valuesOf(3),
+        triangles.centerValues.data() + lanes * (rows * number + this->arrayOffsets_[n]));
+    }
+  }
+  const std::size_t end = triangles.corners.size();
+  triangles.prepared.resize(std::max(triangles.prepared.size(), kTriangleRows * lanes * end));
+  for (std::size_t t = triangles.firsts.back(); t < end; ++t)
+  {
+    const auto& c = triangles.corners[t];
+    prepareTriangle(this->lanes_, this->cornerPosition(triangles, c[0]),
+      this->cornerPosition(triangles, c[1]), this->cornerPosition(triangles, c[2]),
+      triangles.prepared.data() + kTriangleRows * lanes * t);
+  }
+  triangles.firsts.push_back(static_cast<int>(end));
+}
+
+const float* TriQuadCost::cornerValues(
+  const Triangles& triangles, int corner, std::size_t array) const
+{
+  const std::size_t lanes = this->lanes_;
+  if (corner >= kCenters)
+  {
+    return triangles.centerValues.data() +
+      lanes *
+      (this->arrayOffsets_.back() * static_cast<std::size_t>(corner - kCenters) +
+        this->arrayOffsets_[array]);
+  }
+  const Index node = corner == 0 ? this->patch_->node : this->patch_->ring[corner - 1];
+  return this->options_.arrays[array].rows->at(node);
+}
+
+// The distance of a point to some cells joins squares_, with the error of the arrays there if the
+// point is a node. Returns the nearest cell.
+int TriQuadCost::measurePoint(
+  const Triangles& triangles, int beginCell, int endCell, const float* point, Index node)
+{
+  const int lanes = this->lanes_;
+  float* nearest = this->nearest_.data();
+  std::fill_n(nearest, lanes, kInfinity);
+  const bool steer = node != kNone && !this->laneValues_.empty();
+  int home = beginCell;
+  float homeSquare = kInfinity;
+  for (int cell = beginCell; cell < endCell; ++cell)
+  {
+    const int begin = triangles.firsts[cell];
+    const int end = triangles.firsts[cell + 1];
+    if (begin == end)
+    {
+      continue;
+    }
+    float* squares = steer || endCell - beginCell == 1 ? nearest : this->cellNearest_.data();
+    std::fill_n(this->cellNearest_.data(), lanes, kInfinity);
+    for (int t = begin; t < end; ++t)
+    {
+      const float* prepared = triangles.prepared.data() + std::size_t{ kTriangleRows } * lanes * t;
+      if (steer)
+      {
+        for (std::size_t n = 0; n < this->laneValues_.size(); ++n)
+        {
+          LaneValues& values = this->laneValues_[n];
+          for (int k = 0; k < 3; ++k)
+          {
+            values.corners[k] = this->cornerValues(triangles, triangles.corners[t][k], n);
+          }
+          values.point = this->options_.arrays[n].rows->at(node);
+          values.components = this->options_.arrays[n].rows->components();
+          values.scale = this->arrayScales_[n];
+        }
+        minimumDistances(lanes, prepared, point, this->laneValues_.data(),
+          static_cast<int>(this->laneValues_.size()), nearest, this->errors_.data());
+        minimumDistances(lanes, prepared, point, this->cellNearest_.data());
+      }
+      else
+      {
+        minimumDistances(lanes, prepared, point, squares);
+      }
+    }
+    const float square = largest(lanes, steer ? this->cellNearest_.data() : squares);
+    if (square < homeSquare)
+    {
+      homeSquare = square;
+      home = cell;
+    }
+    if (!steer && squares != nearest)
+    {
+      lower(lanes, squares, nearest);
+    }
+  }
+  raise(lanes, nearest, this->squares_.data());
+  if (steer)
+  {
+    raise(lanes, this->errors_.data(), this->squares_.data());
+  }
+  return home;
+}
+
+// The slot beyond the edge that is left of a fan of one triangle.
+Index TriQuadCost::cellBehind(const TriQuadPatch& patch, int fan, unsigned char target) const
+{
+  const TriQuadTopology& t = this->topology_;
+  const Fan& f = patch.fans[fan];
+  const Index slot = slotOf(f.corners[0]);
+  const Index* cell = t.cell(slot);
+  Index behind = kNone;
+  for (int k = 0; k < kTriQuadCorners; ++k)
+  {
+    const Index third = cell[k];
+    if (third != kNone && third != f.copy && t.nodeOf(third) != patch.ring[target - 1])
+    {
+      behind = t.cellAcross(patch.targetCopies[fan], third, slot);
+    }
+  }
+  return behind;
+}
+
+// The nodes removed from the cells of a fan, and its own node, to the new cells.
+void TriQuadCost::measureRemoved(const TriQuadPatch& patch, int fan, unsigned char target)
+{
+  const int lanes = this->lanes_;
+  int begin = 0;
+  while (patch.fanOf[begin] != fan)
+  {
+    ++begin;
+  }
+  int end = begin;
+  while (end < patch.cellCount && patch.fanOf[end] == fan)
+  {
+    ++end;
+  }
+  const bool vanishes = this->newTriangles_.firsts[begin] == this->newTriangles_.firsts[end];
+  const Index behind = vanishes ? this->cellBehind(patch, fan, target) : kNone;
+  const float* edge[2] = { this->position(target),
+    this->position(patch.line[0] == target ? patch.line[1] : patch.line[0]) };
+  const auto measureCopy = [&](Index copy, const float* point)
+  {
+    Index home = behind;
+    if (vanishes)
+    {
+      maximumDistanceToEdge(lanes, edge[0], edge[1], point, this->squares_.data());
+    }
+    else
+    {
+      home = patch.slots[this->measurePoint(
+        this->newTriangles_, begin, end, point, this->topology_.nodeOf(copy))];
+    }
+    this->homes_.push_back({ copy, home });
+  };
+  measureCopy(patch.fans[fan].copy, this->position(0));
+  for (int i = begin; i < end; ++i)
+  {
+    for (Index copy = this->firstRemoved_[patch.slots[i]]; copy != kNone;
+         copy = this->nextRemoved_[copy])
+    {
+      subtract(lanes, 3, this->positions_.at(this->topology_.nodeOf(copy)),
+        this->positions_.at(patch.node), this->point_.data());
+      measureCopy(copy, this->point_.data());
+    }
+  }
+}
+
+// The middles of new edges to the old cells: what the removed nodes do not see, such as a ridge
+// that flips.
+void TriQuadCost::measureNewEdges(const TriQuadPatch& patch, unsigned char target)
+{
+  int begin = 0;
+  for (int f = 0; f < patch.fanCount; ++f)
+  {
+    int end = begin;
+    while (end < patch.cellCount && patch.fanOf[end] == f)
+    {
+      ++end;
+    }
+    const Fan& fan = patch.fans[f];
+    for (int i = 0; i < fan.neighbourCount; ++i)
+    {
+      const Index node = this->topology_.nodeOf(fan.neighbours[i]);
+      const auto other = static_cast<unsigned char>(
+        std::find(patch.ring.begin(), patch.ring.begin() + patch.ringSize, node) -
+        patch.ring.begin() + 1);
+      bool isNew = other != target;
+      for (int c = begin; c < end && isNew; ++c)
+      {
+        std::array<unsigned char, 4> cell;
+        const auto& old = patch.cells[c];
+        isNew = patch.newCell(c, target, cell) != 0 ||
+          std::find(old.begin(), old.end(), other) == old.end();
+      }
+      if (isNew)
+      {
+        middle(this->lanes_, this->position(target), this->position(other), this->point_.data());
+        this->measurePoint(this->oldTriangles_, begin, end, this->point_.data(), kNone);
+      }
+    }
+    begin = end;
+  }
+}
+
+Index TriQuadCost::firstOnLine(Index a, Index b) const
+{
+  const auto found = this->lines_.find(lineKey(a, b));
+  return found == this->lines_.end() ? kNone : found->second;
+}
+
+// The nodes removed from the two edges of a boundary that become one.
+void TriQuadCost::measureLine(const TriQuadPatch& patch, unsigned char target)
+{
+  const int lanes = this->lanes_;
+  const unsigned char other = patch.line[0] == target ? patch.line[1] : patch.line[0];
+  const float* a = this->position(target);
+  const float* b = this->position(other);
+  maximumDistanceToEdge(lanes, a, b, this->position(0), this->squares_.data());
+  for (const unsigned char end : { target, other })
+  {
+    for (Index node = this->firstOnLine(patch.node, patch.ring[end - 1]); node != kNone;
+         node = this->nextOnLine_[node])
+    {
+      subtract(
+        lanes, 3, this->positions_.at(node), this->positions_.at(patch.node), this->point_.data());
+      maximumDistanceToEdge(lanes, a, b, this->point_.data(), this->squares_.data());
+    }
+  }
+}
+
+// The criterion Deviation for one target; the squares stay in squares_.
+double TriQuadCost::measure(const TriQuadPatch& patch, unsigned char target)
+{
+  std::fill(this->squares_.begin(), this->squares_.end(), 0.0F);
+  this->homes_.clear();
+  this->newTriangles_.clear();
+  for (int i = 0; i < patch.cellCount; ++i)
+  {
+    std::array<unsigned char, 4> cell;
+    if (patch.newCell(i, target, cell) == 0)
+    {
+      cell.fill(kNoLocal);
+    }
+    this->addCell(cell.data(), this->newTriangles_);
+  }
+  if (patch.line[0] != 0)
+  {
+    this->measureLine(patch, target);
+  }
+  for (int f = 0; f < patch.fanCount; ++f)
+  {
+    this->measureRemoved(patch, f, target);
+  }
+  this->measureNewEdges(patch, target);
+  return this->combine(this->squares_.data());
+}
+
+// The quadrics' distance for one target.
+double TriQuadCost::quadricError(const TriQuadPatch& patch, unsigned char target)
+{
+  const int lanes = this->lanes_;
+  float* squares = this->squares_.data();
+  const float* own = this->quadric(patch.node);
+  const float* other = this->quadric(patch.ring[target - 1]);
+  quadricValues(lanes, own, this->position(target), squares);
+  for (int i = 0; i < lanes; ++i)
+  {
+    const float weight = own[kQuadricWeight * lanes + i] + other[kQuadricWeight * lanes + i];
+    squares[i] = weight > 0.0F ? (squares[i] + other[9 * lanes + i]) / weight : 0.0F;
+  }
+  return this->combine(squares);
+}
+
+bool TriQuadCost::evaluate(Index node, TriQuadPatch& patch)
+{
+  this->patch_ = &patch;
+  if (!this->gather(node, patch))
+  {
+    return false;
+  }
+  this->rankTargets(patch);
+  const bool deviation = this->options_.criterion == TriQuadCriterion::Deviation;
+  const int wanted = deviation ? std::max(1, this->options_.candidates) : 1;
+  int compared = 0;
+  std::array<Index, TriQuadPatch::kMaximumFans> bestCopies{};
+  for (int i = 0; i < this->targetCount_ && compared < wanted; ++i)
+  {
+    const unsigned char target = this->targets_[i].local;
+    if (!this->mayGo(patch, target) || !this->keepsCells(patch, target))
+    {
+      continue;
+    }
+    if (!deviation)
+    {
+      patch.target = target;
+      patch.error = this->quadricError(patch, target);
+      patch.cost = this->targets_[i].rank;
+      return true;
+    }
+    if (compared == 0)
+    {
+      this->oldTriangles_.clear();
+      for (int c = 0; c < patch.cellCount; ++c)
+      {
+        this->addCell(patch.cells[c].data(), this->oldTriangles_);
+      }
+    }
+    const double error = this->measure(patch, target);
+    const double cost = error + this->options_.quadWeight * patch.quadsLost(target);
+    if (compared == 0 || cost < patch.cost)
+    {
+      patch.target = target;
+      patch.error = error;
+      patch.cost = cost;
+      bestCopies = patch.targetCopies;
+      this->bestHomes_.swap(this->homes_);
+      this->bestSquares_ = this->squares_;
+    }
+    ++compared;
+  }
+  patch.targetCopies = bestCopies;
+  return compared > 0;
+}
+
+void TriQuadCost::collapsed(const TriQuadPatch& patch)
+{
+  const Index target = patch.ring[patch.target - 1];
+  subtract(this->lanes_, 3, this->positions_.at(target), this->positions_.at(patch.node),
+    this->point_.data());
+  mergeQuadric(this->lanes_, this->quadric(patch.node), this->point_.data(), this->quadric(target));
+  if (this->options_.criterion != TriQuadCriterion::Deviation)
+  {
+    return;
+  }
+  this->worst_.resize(this->lanes_, 0.0F);
+  raise(this->lanes_, this->bestSquares_.data(), this->worst_.data());
+  for (int i = 0; i < patch.cellCount; ++i)
+  {
+    this->firstRemoved_[patch.slots[i]] = kNone;
+  }
+  for (const Home& home : this->bestHomes_)
+  {
+    if (home.slot != kNone)
+    {
+      this->nextRemoved_[home.copy] = this->firstRemoved_[home.slot];
+      this->firstRemoved_[home.slot] = home.copy;
+    }
+  }
+  if (patch.line[0] != 0)
+  {
+    // The lists of both edges and the node itself go to the new edge.
+    const unsigned char end = patch.line[0] == patch.target ? patch.line[1] : patch.line[0];
+    const Index other = patch.ring[end - 1];
+    Index first = patch.node;
+    this->nextOnLine_[first] = kNone;
+    for (const Index side : { target, other })
+    {
+      Index node = this->firstOnLine(patch.node, side);
+      this->lines_.erase(lineKey(patch.node, side));
+      while (node != kNone)
+      {
+        const Index next = this->nextOnLine_[node];
+        this->nextOnLine_[node] = first;
+        first = node;
+        node = next;
+      }
+    }
+    this->lines_[lineKey(target, other)] = first;
+  }
+}
+
+std::vector<Index> TriQuadCost::homes() const
+{
+  std::vector<Index> homes;
+  if (this->options_.criterion == TriQuadCriterion::Deviation)
+  {
+    homes.assign(this->topology_.nodeCount(), kNone);
+    for (Index slot = 0; slot < this->topology_.cellCount(); ++slot)
+    {
+      for (Index copy = this->firstRemoved_[slot]; copy != kNone; copy = this->nextRemoved_[copy])
+      {
+        homes[this->topology_.nodeOf(copy)] = slot;
+      }
+    }
+  }
+  return homes;
+}
+
+std::vector<double> TriQuadCost::stepErrors() const
+{
+  std::vector<double> errors;
+  for (int i = 0; i < this->positions_.steps() && !this->worst_.empty(); ++i)
+  {
+    errors.push_back(std::sqrt(static_cast<double>(this->worst_[i])));
+  }
+  return errors;
+}
+
+} // namespace undecimate

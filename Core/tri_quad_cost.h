@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file tri_quad_cost.h
+/// @brief Where a node goes best in a mesh of triangles and quads, and what that costs.
+///
+/// See tri_quad_decimation.h for what the criteria measure. A collapse is refused if a cell that
+/// changes would turn too far, become a needle, or, as a quad, get a corner that points inwards, at
+/// any of the time steps.
+
+#ifndef UNDECIMATE_CORE_TRI_QUAD_COST_H
+#define UNDECIMATE_CORE_TRI_QUAD_COST_H
+
+#include "time_lanes.h"
+#include "tri_quad_decimation.h"
+#include "tri_quad_topology.h"
+
+#include <array>
+#include <unordered_map>
+#include <vector>
+
+namespace undecimate
+{
+
+/// A node with all cells around it, in numbers local to the patch, and where it goes.
+///
+/// Local number 0 is the node, i + 1 the node ring[i], kNoLocal the empty corner of a triangle.
+struct TriQuadPatch
+{
+  /// Copies of a node that may go together; others stay.
+  static constexpr int kMaximumFans = 8;
+
+  Index node = kNone;
+  int fanCount = 0;
+  std::array<Fan, kMaximumFans> fans;
+  int cellCount = 0;
+  int ringSize = 0;
+  std::array<Index, kMaximumRing> ring;                               // nodes
+  std::array<Index, kMaximumPatchCells> slots;                        // fan after fan
+  std::array<unsigned char, kMaximumPatchCells> fanOf;                // of a cell
+  std::array<std::array<unsigned char, 4>, kMaximumPatchCells> cells; // local corners
+
+  /// The two nodes beside it on the boundary or seam; local numbers, 0 in the interior.
+  unsigned char line[2] = { 0, 0 };
+
+  unsigned char target = 0; ///< local number of the node that it goes to
+  double error = 0.0;       ///< of the step, as a fraction of the diagonal
+  double cost = 0.0;        ///< with the weight of the quads: what the queue goes by
+
+  /// The copies of the target, one for each fan.
+  std::array<Index, kMaximumFans> targetCopies;
+
+  /// A cell after the node has gone to a target.
+  /// @param[out] corners local numbers, kNoLocal where there is none
+  /// @return number of corners; 0 if the cell vanishes
+  int newCell(int cell, unsigned char to, std::array<unsigned char, 4>& corners) const;
+
+  /// Quads that become triangles then.
+  int quadsLost(unsigned char to) const;
+
+  /// Whether cells of two sheets get the same nodes then.
+  bool hasTwins(unsigned char to) const;
+};
+
+class TriQuadCost
+{
+public:
+  /// @param kept nodes that are never removed; those whose cells have a node without a finite
+  /// position or value are added
+  TriQuadCost(TriQuadTopology& topology, const TimeRows& positions,
+    const TriQuadDecimationOptions& options, std::vector<unsigned char>& kept);
+
+  /// Find where a node goes best.
+  /// @return false if it cannot go anywhere; the patch is then not to be used
+  bool evaluate(Index node, TriQuadPatch& patch);
+
+  /// Take note that the collapse of the last evaluate() is made. Call before the topology changes.
+  void collapsed(const TriQuadPatch& patch);
+
+  /// The cell (slot) in which each removed node lies now, kNone for those that are left; empty
+  /// unless the criterion is Deviation.
+  std::vector<Index> homes() const;
+
+  /// Largest error at each step so far; empty unless the criterion is Deviation.
+  std::vector<double> stepErrors() const;
+
+  void prefetch(Index node) const;
+
+private:
+  const float* position(int local) const
+  {
+    return this->relative_.data() + std::size_t{ 3 } * this->lanes_ * local;
+  }
+  float* quadric(Index node)
+  {
+    return this->quadrics_.data() + std::size_t{ kQuadricRows } * this->lanes_ * node;
+  }
+  void buildQuadrics();
+  bool gather(Index node, TriQuadPatch& patch);
+  bool findLine(TriQuadPatch& patch) const;
+  void rankTargets(const TriQuadPatch& patch);
+  bool mayGo(TriQuadPatch& patch, unsigned char target);
+  bool keepsCells(const TriQuadPatch& patch, unsigned char target) const;
+  double combine(const float* squares) const;
+  double quadricError(const TriQuadPatch& patch, unsigned char target);
+  double measure(const TriQuadPatch& patch, unsigned char target);
+  void measureLine(const TriQuadPatch& patch, unsigned char target);
+  void measureNewEdges(const TriQuadPatch& patch, unsigned char target);
+
+  // Cells of the patch, cut into triangles: quads around their centers.
+  struct Triangles
+  {
+    std::vector<std::array<int, 3>> corners; // local numbers; kCenters + i is center i
+    std::vector<int> firsts;                 // first triangle of each cell, and the end
+    std::vector<float> prepared;             // for distances
+    std::vector<float> centers;
+    std::vector<float> centerValues; // of all arrays
+    int centerCount = 0;
+
+    void clear();
+  };
+  static constexpr int kCenters = 256;
+  void addCell(const unsigned char* cell, Triangles& triangles);
+  const float* cornerPosition(const Triangles& triangles, int corner) const;
+  const float* cornerValues(const Triangles& triangles, int corner, std::size_t array) const;
+  int measurePoint(
+    const Triangles& triangles, int beginCell, int endCell, const float* point, Index node);
+  void measureRemoved(const TriQuadPatch& patch, int fan, unsigned char target);
+  Index cellBehind(const TriQuadPatch& patch, int fan, unsigned char target) const;
+  Index firstOnLine(Index a, Index b) const;
+
+  TriQuadTopology& topology_;
+  const TimeRows& positions_;
+  const TriQuadDecimationOptions& options_;
+  const std::vector<unsigned char>& kept_;
+  int lanes_;
+  LargeArray<float, 3> quadrics_; // of each node: kQuadricRows rows
+  std::vector<float> arrayScales_;
+  std::vector<int> arrayOffsets_; // first row of each array among all, and the end
+
+  // Removed copies: a list for each cell, and one of nodes for each boundary edge (by its ends).
+  std::vector<Index> firstRemoved_; // of a slot
+  std::vector<Index> nextRemoved_;  // of a copy
+  std::vector<Index> nextOnLine_;   // of a node
+  std::unordered_map<std::uint64_t, Index> lines_;
+
+  // The patch at hand.
+  const TriQuadPatch* patch_ = nullptr;
+  std::vector<float> relative_; // positions less the node's, by local number
+  struct Target
+  {
+    unsigned char local;
+    double rank;
+  };
+  std::array<Target, kMaximumRing> targets_;
+  int targetCount_ = 0;
+  Triangles oldTriangles_;
+  Triangles newTriangles_;
+  std::vector<LaneValues> laneValues_;
+  std::vector<float> point_;
+  std::vector<float> nearest_;
+  std::vector<float> cellNearest_;
+  std::vector<float> errors_;
+  std::vector<float> squares_;     // largest over all samples
+  std::vector<float> bestSquares_; // of the target that was chosen
+  std::vector<float> worst_;       // largest of all collapses
+  struct Home
+  {
+    Index copy;
+    Index slot;
+  };
+  std::vector<Home> homes_;     // of the target measured last
+  std::vector<Home> bestHomes_; // of the one that was chosen
+};
+
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,409 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tri_quad_decimation.h"
+
+#include "tri_quad_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+namespace undecimate
+{
+
+namespace
+{
+
+// Share of the progress that the first evaluation gets.
+constexpr double kEvaluationShare = 0.15;
+
+class TriQuadDecimation
+{
+public:
+  TriQuadDecimation(TriQuadTopology& topology, TriQuadCost& cost,
+    const std::vector<unsigned char>& kept, const TriQuadDecimationOptions& options,
+    Monitor& monitor)
+    : topology_(topology)
+    , cost_(cost)
+    , kept_(kept)
+    , options_(options)
+    , monitor_(monitor)
+    , nodesLeft_(topology.nodeCount())
+  {
+    // The rounding of 1 - 0.9 must not ask for a node more or less.
+    const double left = (1.0 - options.targetReduction) * topology.nodeCount();
+    this->goal_ = static_cast<Index>(std::ceil(left * (1.0 - 1e-12)));
+    if (options.targetNodes > this->goal_)
+    {
+      this->goal_ =
+        static_cast<Index>(std::min<std::int64_t>(options.targetNodes, topology.nodeCount()));
+      this->goalReason_ = StopReason::TargetNodes;
+    }
+  }
+
+  Status run(TriQuadDecimationResult& result)
+  {
+    RecordBuilder builder(this->topology_.nodeCount(), this->topology_.cellCount(), false,
+      this->nodesLeft_ - this->goal_, kTriQuadCorners);
+    HashQueue queue(this->topology_.nodeCount(), kLogarithmicIntervals);
+    if (!this->evaluateAll(queue))
+    {
+      return Status::Cancelled;
+    }
+    result.stopReason = StopReason::NoRemovableNode;
+    bool tooCostly = false;
+    const Index planned = std::max<Index>(1, this->nodesLeft_ - this->goal_);
+    for (std::uint64_t turn = 0;; ++turn)
+    {
+      if (this->nodesLeft_ <= this->goal_)
+      {
+        result.stopReason = this->goalReason_;
+        break;
+      }
+      const double done =
+        1.0 - static_cast<double>(this->nodesLeft_ - this->goal_) / static_cast<double>(planned);
+      if ((turn & 63) == 0 &&
+        !this->monitor_.update(std::min(0.99, kEvaluationShare + (1.0 - kEvaluationShare) * done)))
+      {
+        return Status::Cancelled;
+      }
+      const Index interval = queue.lowestInterval();
+      const Index node = queue.pop();
+      if (node == kNone)
+      {
+        result.stopReason = tooCostly ? StopReason::MaximumError : StopReason::NoRemovableNode;
+        break;
+      }
+      this->prefetch(queue);
+      // A node that cannot go now waits outside the queue until a neighbour goes.
+      if (!this->cost_.evaluate(node, this->patch_))
+      {
+        continue;
+      }
+      const Index current = logarithmicInterval(static_cast<float>(this->patch_.cost));
+      if (current > interval && !queue.empty() && current > queue.lowestInterval())
+      {
+        queue.insert(node, current);
+        continue;
+      }
+      if (this->patch_.error > this->options_.maximumError)
+      {
+        tooCostly = true;
+        continue;
+      }
+      this->remove(builder);
+      this->reinsertRing(queue, interval);
+    }
+    result.error = builder.error();
+    result.stepErrors = this->cost_.stepErrors();
+    const std::vector<Index> cells = this->topology_.takeCells();
+    result.record = builder.finish(
+      [&cells](Index cell, Index* corners) {
+        std::copy_n(cells.data() + std::size_t{ kTriQuadCorners } * cell, kTriQuadCorners, corners);
+      },
+      result.baseCells);
+    return this->monitor_.update(1.0) ? Status::Ok : Status::Cancelled;
+  }
+
+private:
+  bool evaluateAll(HashQueue& queue)
+  {
+    const Index count = this->topology_.nodeCount();
+    for (Index node = 0; node < count; ++node)
+    {
+      if ((node & 255) == 0 && !this->monitor_.update(kEvaluationShare * node / count))
+      {
+        return false;
+      }
+      if (!this->kept_[node] && this->cost_.evaluate(node, this->patch_))
+      {
+        queue.insert(node, logarithmicInterval(static_cast<float>(this->patch_.cost)));
+      }
+    }
+    return true;
+  }
+
+  void prefetch(const HashQueue& queue) const
+  {
+    const Index next = queue.front();
+    if (next != kNone)
+    {
+      this->topology_.prefetch(next);
+      this->cost_.prefetch(next);
+    }
+  }
+
+  // Make the collapse that was found, and write it down. Cells that stay come first, each fan's in
+  // the order around the node, so that equal patches are equal steps.
+  void remove(RecordBuilder& builder)
+  {
+    const TriQuadPatch& patch = this->patch_;
+    std::array<int, kMaximumPatchCells> order;
+    this->orderCells(order);
+    std::array<Index, kMaximumPatchCells> slots;
+    std::array<std::array<unsigned char, 4>, kMaximumPatchCells> oldCells;
+    std::array<std::array<unsigned char, 4>, kMaximumPatchCells> newCells;
+    int count = 0;
+    int vanished = patch.cellCount;
+    for (int i = 0; i < patch.cellCount; ++i)
+    {
+      std::array<unsigned char, 4> cell;
+      const bool stays = patch.newCell(order[i], patch.target, cell) != 0;
+      const int place = stays ? count++ : --vanished;
+      slots[place] = patch.slots[order[i]];
+      oldCells[place] = emptyCornerLast(patch.cells[order[i]]);
+      newCells[place] = emptyCornerLast(cell);
+    }
+    RecordBuilder::Step step;
+    step.node = patch.node;
+    step.ring = patch.ring.data();
+    step.ringSize = patch.ringSize;
+    step.oldCount = patch.cellCount;
+    step.newCount = count;
+    step.slots = slots.data();
+    step.oldCells = oldCells[0].data();
+    step.newCells = newCells[0].data();
+    step.error = patch.error;
+    builder.append(step);
+    this->cost_.collapsed(patch);
+    for (int f = 0; f < patch.fanCount; ++f)
+    {
+      this->topology_.collapse(patch.fans[f], patch.targetCopies[f]);
+    }
+    --this->nodesLeft_;
+  }
+
+  static std::array<unsigned char, 4> emptyCornerLast(std::array<unsigned char, 4> cell)
+  {
+    std::fill(std::remove(cell.begin(), cell.end(), kNoLocal), cell.end(), kNoLocal);
+    return cell;
+  }
+
+  // Around the node, from a cell with the target on.
+  void orderCells(std::array<int, kMaximumPatchCells>& order) const
+  {
+    const TriQuadPatch& patch = this->patch_;
+    std::array<bool, kMaximumPatchCells> taken{};
+    int count = 0;
+    unsigned char edge = patch.target;
+    while (count < patch.cellCount)
+    {
+      int next = kNone;
+      for (int i = 0; i < patch.cellCount && next == kNone; ++i)
+      {
+        next = !taken[i] && besideNode(patch.cells[i], 1) == edge ? i : kNone;
+      }
+      // Another orientation, another fan, or an end of an open one.
+      for (int i = 0; i < patch.cellCount && next == kNone; ++i)
+      {
+        next = taken[i] ? kNone : i;
+      }
+      taken[next] = true;
+      order[count++] = next;
+      edge = besideNode(patch.cells[next], 3);
+    }
+  }
+
+  // The corner behind (offset 1) or before (offset 3) the node, past the empty one of a triangle.
+  static unsigned char besideNode(const std::array<unsigned char, 4>& cell, int offset)
+  {
+    const auto place = std::find(cell.begin(), cell.end(), 0) - cell.begin();
+    const unsigned char beside = cell[(place + offset) & 3];
+    return beside != kNoLocal ? beside : cell[(place + 2) & 3];
+  }
+
+  void reinsertRing(HashQueue& queue, Index interval)
+  {
+    for (int i = 0; i < this->patch_.ringSize; ++i)
+    {
+      // Evaluated when its turn comes; one that waits outside gets a new chance.
+      const Index node = this->patch_.ring[i];
+      if (!this->kept_[node])
+      {
+        queue.insert(node, queue.contains(node) ? queue.interval(node) : interval);
+      }
+    }
+  }
+
+  TriQuadTopology& topology_;
+  TriQuadCost& cost_;
+  const std::vector<unsigned char>& kept_;
+  const TriQuadDecimationOptions& options_;
+  Monitor& monitor_;
+  Index nodesLeft_;
+  Index goal_ = 0;
+  StopReason goalReason_ = StopReason::TargetReduction;
+  TriQuadPatch patch_;
+};
+
+Outcome checkOptions(const TriQuadDecimationOptions& options, const TimeRows& positions)
+{
+  const auto invalid = [](const char* name, double value, const char* range) -> Outcome
+  {
+    return { Status::InvalidArgument,
+      std::string(name) + " is " + std::to_string(value) + "; it must be " + range + "." };
+  };
+  if (!(options.targetReduction >= 0.0 && options.targetReduction <= 1.0))
+  {
+    return invalid("TargetReduction", options.targetReduction, "from 0 to 1");
+  }
+  if (options.targetNodes < 0)
+  {
+    return invalid("TargetNodes", static_cast<double>(options.targetNodes), "0 or more");
+  }
+  if (!(options.maximumError >= 0.0))
+  {
+    return invalid("MaximumError", options.maximumError, "0 or more");
+  }
+  if (!(options.quadWeight >= 0.0) || !std::isfinite(options.quadWeight))
+  {
+    return invalid("QuadWeight", options.quadWeight, "0 or more, and finite");
+  }
+  if (!(options.scalarWeight >= 0.0) || !std::isfinite(options.scalarWeight))
+  {
+    return invalid("ScalarWeight", options.scalarWeight, "0 or more, and finite");
+  }
+  if (options.candidates < 1)
+  {
+    return invalid("The number of candidates", options.candidates, "1 or more");
+  }
+  for (const TimeArray& array : options.arrays)
+  {
+    if (!array.rows || array.rows->nodeCount() != positions.nodeCount() ||
+      array.rows->steps() != positions.steps())
+    {
+      return { Status::InvalidArgument,
+        "Nodal array '" + array.name + "' has other nodes or steps than the positions." };
+    }
+  }
+  return {};
+}
+
+Outcome checkMesh(const TriQuadMeshView& mesh, const TimeRows& positions)
+{
+  constexpr std::int64_t kLimit = std::numeric_limits<Index>::max();
+  if (mesh.nodeCount > kLimit || mesh.cellCount > kLimit / 4)
+  {
+    return { Status::TooLarge,
+      "The mesh has " + std::to_string(mesh.nodeCount) + " nodes and " +
+        std::to_string(mesh.cellCount) + " cells; at most " + std::to_string(kLimit) + " and " +
+        std::to_string(kLimit / 4) + " fit into one piece. Split it into blocks." };
+  }
+  if (mesh.nodeCount < 0 || mesh.cellCount < 0 || (mesh.cellCount > 0 && !mesh.cells))
+  {
+    return { Status::InvalidArgument, "The mesh needs its cells and their number." };
+  }
+  if (positions.nodeCount() != mesh.nodeCount || positions.components() != 3)
+  {
+    return { Status::InvalidArgument,
+      "There are positions of " + std::to_string(positions.nodeCount()) + " nodes for " +
+        std::to_string(mesh.nodeCount) + " nodes." };
+  }
+  for (std::int64_t i = 0; i < kTriQuadCorners * mesh.cellCount; ++i)
+  {
+    const Index node = mesh.cells[i];
+    const bool empty = node == kNone && i % kTriQuadCorners == kTriQuadCorners - 1;
+    if (!empty && (node < 0 || node >= mesh.nodeCount))
+    {
+      return { Status::InvalidArgument,
+        "Cell " + std::to_string(i / kTriQuadCorners) + " refers to node " + std::to_string(node) +
+          ", but there are " + std::to_string(mesh.nodeCount) + " nodes." };
+    }
+  }
+  return {};
+}
+
+/// Flag the nodes that are never candidates, and count them by reason.
+std::vector<unsigned char> findKeptNodes(const TriQuadMeshView& mesh,
+  const TriQuadTopology& topology, bool preserveBoundary, TriQuadDecimationResult& result)
+{
+  std::vector<unsigned char> kept(mesh.nodeCount, 0);
+  for (Index node = 0; node < mesh.nodeCount; ++node)
+  {
+    Index* counter = nullptr;
+    if (mesh.keep && mesh.keep[node])
+    {
+      counter = &result.requestedNodes;
+    }
+    else if (topology.kind(node) == TriQuadNodeKind::Unused)
+    {
+      counter = &result.unusedNodes;
+    }
+    else if (topology.kind(node) == TriQuadNodeKind::Irregular)
+    {
+      counter = &result.irregularNodes;
+    }
+    else if (preserveBoundary && topology.hasFreeEdge(node))
+    {
+      counter = &result.boundaryNodes;
+    }
+    else if (topology.kind(node) == TriQuadNodeKind::Seam)
+    {
+      ++result.seamNodes;
+    }
+    if (counter)
+    {
+      ++*counter;
+      kept[node] = 1;
+    }
+  }
+  return kept;
+}
+
+Outcome run(const TriQuadMeshView& mesh, const TimeRows& positions,
+  const TriQuadDecimationOptions& options, Monitor& monitor, TriQuadDecimationResult& result)
+{
+  TriQuadTopology topology(mesh);
+  std::vector<unsigned char> kept = findKeptNodes(mesh, topology, options.preserveBoundary, result);
+  const auto before = std::count(kept.begin(), kept.end(), 0);
+  TriQuadCost cost(topology, positions, options, kept);
+  result.nonFiniteNodes = static_cast<Index>(before - std::count(kept.begin(), kept.end(), 0));
+  const Status status = TriQuadDecimation(topology, cost, kept, options, monitor).run(result);
+  return { status, status == Status::Cancelled ? "Cancelled." : "" };
+}
+
+} // namespace
+
+Outcome decimateTriQuad(const TriQuadMeshView& mesh, const TimeRows& positions,
+  const TriQuadDecimationOptions& options, Monitor& monitor, TriQuadDecimationResult& result)
+{
+  result = TriQuadDecimationResult();
+  Outcome outcome = checkOptions(options, positions);
+  if (outcome)
+  {
+    outcome = checkMesh(mesh, positions);
+  }
+  if (!outcome)
+  {
+    return outcome;
+  }
+  try
+  {
+    outcome = run(mesh, positions, options, monitor, result);
+  }
+  catch (const std::bad_alloc&)
+  {
+    outcome = { Status::OutOfMemory,
+      "Not enough memory to decimate " + std::to_string(mesh.nodeCount) + " nodes at " +
+        std::to_string(positions.steps()) + " time steps. Choose fewer steps." };
+  }
+  catch (const std::length_error&)
+  {
+    outcome = { Status::TooLarge, "The record of the decimation would be too large." };
+  }
+  catch (const std::exception& failure)
+  {
+    // Only a callback of the monitor can come to this.
+    outcome = { Status::Cancelled, std::string("Cancelled: ") + failure.what() };
+  }
+  if (!outcome)
+  {
+    result = TriQuadDecimationResult();
+  }
+  return outcome;
+}
+
+} // namespace undecimate
