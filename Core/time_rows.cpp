@@ -50,6 +50,41 @@ void TimeRows::set(
   }
 }
 
+TimeRows TimeRows::select(const std::vector<int>& steps) const
+{
+  TimeRows some(this->nodeCount_, this->components_, static_cast<int>(steps.size()));
+  for (Index node = 0; node < this->nodeCount_; ++node)
+  {
+    const float* from = this->at(node);
+    float* to = some.values_.data() + some.size_ * node;
+    for (int c = 0; c < this->components_; ++c, from += this->lanes_, to += some.lanes_)
+    {
+      for (int lane = 0; lane < some.lanes_; ++lane)
+      {
+        to[lane] = from[lane < some.steps_ ? steps[lane] : steps[0]];
+      }
+    }
+  }
+  some.nonFinite_ = this->nonFinite_;
+  return some;
+}
+
+double largestMove(const TimeRows& a, int stepOfA, const TimeRows& b, int stepOfB)
+{
+  float largest = 0.0F;
+  for (Index node = 0; node < a.nodeCount(); ++node)
+  {
+    float square = 0.0F;
+    for (int c = 0; c < a.components(); ++c)
+    {
+      const float move = a.at(node)[c * a.lanes() + stepOfA] - b.at(node)[c * b.lanes() + stepOfB];
+      square += move * move;
+    }
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(static_cast<double>(largest));
+}
+
 template <typename Real>
 PositionFrame positionFrame(const Real* points, const Real* added, Index nodeCount)
 {

@@ -57,6 +57,9 @@ public:
   /// Whether a value of the node was NaN or infinite at a step that was set. Such values are 0.
   bool isFinite(Index node) const { return this->nonFinite_.empty() || !this->nonFinite_[node]; }
 
+  /// The same values at some of the steps.
+  TimeRows select(const std::vector<int>& steps) const;
+
 private:
   Index nodeCount_;
   int components_;
@@ -69,6 +72,9 @@ private:
 
 extern template void TimeRows::set(int, const float*, const float*, const double*, double);
 extern template void TimeRows::set(int, const double*, const double*, const double*, double);
+
+/// The largest distance of a node between two steps of positions, in the unit of the rows.
+double largestMove(const TimeRows& a, int stepOfA, const TimeRows& b, int stepOfB);
 
 /// The frame of positions: what TimeRows::set() takes away and multiplies with.
 struct PositionFrame

@@ -856,21 +856,82 @@ void TriQuadCost::collapsed(const TriQuadPatch& patch)
   }
 }
 
-std::vector<Index> TriQuadCost::homes() const
+std::vector<double> TriQuadCost::distances(const TimeRows& positions) const
 {
-  std::vector<Index> homes;
-  if (this->options_.criterion == TriQuadCriterion::Deviation)
+  if (this->options_.criterion != TriQuadCriterion::Deviation)
   {
-    homes.assign(this->topology_.nodeCount(), kNone);
-    for (Index slot = 0; slot < this->topology_.cellCount(); ++slot)
+    return {};
+  }
+  const int lanes = positions.lanes();
+  const TriQuadTopology& t = this->topology_;
+  std::vector<float> largestSquares(lanes, 0.0F);
+  std::vector<float> corners(std::size_t{ 5 } * 3 * lanes); // four and the center
+  std::vector<float> prepared(std::size_t{ kTriangleRows } * lanes);
+  std::vector<float> points;
+  std::vector<float> squares;
+  for (Index slot = 0; slot < t.cellCount(); ++slot)
+  {
+    if (this->firstRemoved_[slot] == kNone)
     {
-      for (Index copy = this->firstRemoved_[slot]; copy != kNone; copy = this->nextRemoved_[copy])
+      continue;
+    }
+    const Index* cell = t.cell(slot);
+    const float* origin = nullptr;
+    const float* rows[5];
+    int count = 0;
+    for (int k = 0; k < kTriQuadCorners; ++k)
+    {
+      if (cell[k] != kNone)
       {
-        homes[this->topology_.nodeOf(copy)] = slot;
+        const float* position = positions.at(t.nodeOf(cell[k]));
+        origin = origin ? origin : position;
+        float* row = corners.data() + std::size_t{ 3 } * lanes * count;
+        subtract(lanes, 3, position, origin, row);
+        rows[count++] = row;
+      }
+    }
+    std::size_t samples = 0;
+    for (Index copy = this->firstRemoved_[slot]; copy != kNone; copy = this->nextRemoved_[copy])
+    {
+      points.resize(std::max(points.size(), 3 * lanes * (samples + 1)));
+      subtract(lanes, 3, positions.at(t.nodeOf(copy)), origin, points.data() + 3 * lanes * samples);
+      ++samples;
+    }
+    squares.assign(lanes * samples, kInfinity);
+    if (count == 4)
+    {
+      float* middle = corners.data() + std::size_t{ 12 } * lanes;
+      center(lanes, 3, rows[0], rows[1], rows[2], rows[3], middle);
+      rows[4] = middle;
+    }
+    for (int k = 0; k < (count == 4 ? 4 : 1); ++k)
+    {
+      prepareTriangle(
+        lanes, rows[k], rows[(k + 1) % count], rows[count == 4 ? 4 : 2], prepared.data());
+      for (std::size_t i = 0; i < samples; ++i)
+      {
+        minimumDistances(
+          lanes, prepared.data(), points.data() + 3 * lanes * i, squares.data() + lanes * i);
+      }
+    }
+    for (std::size_t i = 0; i < samples; ++i)
+    {
+      for (int lane = 0; lane < lanes; ++lane)
+      {
+        const float square = squares[lanes * i + lane];
+        if (square < kInfinity)
+        {
+          largestSquares[lane] = std::max(largestSquares[lane], square);
+        }
       }
     }
   }
-  return homes;
+  std::vector<double> distances;
+  for (int step = 0; step < positions.steps(); ++step)
+  {
+    distances.push_back(std::sqrt(static_cast<double>(largestSquares[step])));
+  }
+  return distances;
 }
 
 std::vector<double> TriQuadCost::stepErrors() const

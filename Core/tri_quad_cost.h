@@ -77,9 +77,9 @@ public:
   /// Take note that the collapse of the last evaluate() is made. Call before the topology changes.
   void collapsed(const TriQuadPatch& patch);
 
-  /// The cell (slot) in which each removed node lies now, kNone for those that are left; empty
-  /// unless the criterion is Deviation.
-  std::vector<Index> homes() const;
+  /// Distance of the removed nodes to the cells that they lie in now, the largest at each step of
+  /// some positions; empty unless the criterion is Deviation.
+  std::vector<double> distances(const TimeRows& positions) const;
 
   /// Largest error at each step so far; empty unless the criterion is Deviation.
   std::vector<double> stepErrors() const;

@@ -99,6 +99,10 @@ public:
     }
     result.error = builder.error();
     result.stepErrors = this->cost_.stepErrors();
+    if (this->options_.allPositions)
+    {
+      result.allStepErrors = this->cost_.distances(*this->options_.allPositions);
+    }
     const std::vector<Index> cells = this->topology_.takeCells();
     result.record = builder.finish(
       [&cells](Index cell, Index* corners) {
@@ -402,6 +406,136 @@ Outcome decimateTriQuad(const TriQuadMeshView& mesh, const TimeRows& positions,
   if (!outcome)
   {
     result = TriQuadDecimationResult();
+  }
+  return outcome;
+}
+
+namespace
+{
+
+// A part of a longer call: fractions from `begin` to `end`.
+Monitor partOf(Monitor& monitor, double begin, double end)
+{
+  return Monitor([&monitor, begin, end](double fraction)
+    { return monitor.update(begin + (end - begin) * fraction); });
+}
+
+// The first, the last, and the step that is farthest from both.
+std::vector<int> firstSteps(const TimeRows& positions)
+{
+  const int last = positions.steps() - 1;
+  std::vector<int> steps{ 0 };
+  double farthest = 0.0;
+  int between = 0;
+  for (int step = 1; step < last; ++step)
+  {
+    const double move = std::min(
+      largestMove(positions, step, positions, 0), largestMove(positions, step, positions, last));
+    if (move > farthest)
+    {
+      farthest = move;
+      between = step;
+    }
+  }
+  if (between > 0)
+  {
+    steps.push_back(between);
+  }
+  if (last > 0 && largestMove(positions, 0, positions, last) > 0.0)
+  {
+    steps.push_back(last);
+  }
+  return steps;
+}
+
+Outcome runWithSteps(const TriQuadMeshView& mesh, const TimeRows& positions,
+  TriQuadDecimationOptions options, const std::vector<int>& steps, Monitor& monitor,
+  TriQuadDecimationResult& result)
+{
+  const TimeRows some = positions.select(steps);
+  std::vector<TimeRows> arrays;
+  arrays.reserve(options.arrays.size());
+  for (TimeArray& array : options.arrays)
+  {
+    arrays.push_back(array.rows->select(steps));
+    array.rows = &arrays.back();
+  }
+  return decimateTriQuad(mesh, some, options, monitor, result);
+}
+
+} // namespace
+
+Outcome decimateTriQuadAutomatically(const TriQuadMeshView& mesh, const TimeRows& positions,
+  const TriQuadDecimationOptions& options, double factor, Monitor& monitor,
+  TriQuadDecimationResult& result, std::vector<int>& steps)
+{
+  result = TriQuadDecimationResult();
+  steps.clear();
+  if (!(factor >= 1.0))
+  {
+    return { Status::InvalidArgument,
+      "StepFactor is " + std::to_string(factor) + "; it must be 1 or more." };
+  }
+  Outcome outcome = checkOptions(options, positions);
+  if (outcome)
+  {
+    outcome = checkMesh(mesh, positions);
+  }
+  if (!outcome)
+  {
+    return outcome;
+  }
+  try
+  {
+    steps = firstSteps(positions);
+    TriQuadDecimationOptions measured = options;
+    measured.criterion = TriQuadCriterion::Deviation;
+    measured.allPositions = &positions;
+    // How many rounds there will be is not known: each gets half of what is left.
+    double done = 0.0;
+    for (bool enough = false; !enough;)
+    {
+      Monitor part = partOf(monitor, done, 0.5 * (1.0 + done));
+      done = 0.5 * (1.0 + done);
+      outcome = runWithSteps(mesh, positions, measured, steps, part, result);
+      if (!outcome)
+      {
+        break;
+      }
+      double chosen = 0.0;
+      for (const int step : steps)
+      {
+        chosen = std::max(chosen, result.allStepErrors[step]);
+      }
+      const auto& errors = result.allStepErrors;
+      const auto worst = std::max_element(errors.begin(), errors.end());
+      enough = *worst <= factor * chosen;
+      if (!enough)
+      {
+        const int step = static_cast<int>(worst - errors.begin());
+        steps.insert(std::upper_bound(steps.begin(), steps.end(), step), step);
+      }
+    }
+    if (outcome && options.criterion != TriQuadCriterion::Deviation)
+    {
+      Monitor part = partOf(monitor, done, 1.0);
+      outcome = runWithSteps(mesh, positions, options, steps, part, result);
+    }
+    if (outcome && !monitor.update(1.0))
+    {
+      outcome = { Status::Cancelled, "Cancelled." };
+    }
+  }
+  catch (const std::bad_alloc&)
+  {
+    outcome = { Status::OutOfMemory,
+      "Not enough memory to choose among " + std::to_string(positions.steps()) +
+        " time steps. Choose fewer steps." };
+  }
+  if (!outcome)
+  {
+    result = TriQuadDecimationResult();
+    steps.clear();
   }
   return outcome;
 }

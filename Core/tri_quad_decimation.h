@@ -83,6 +83,11 @@ struct TriQuadDecimationOptions
   std::vector<TimeArray> arrays;
   double scalarWeight = 0.1; ///< 0 or more; 0 = geometry only
 
+  /// Positions at more steps than those that count, in the same frame: at the end the distance of
+  /// each removed node to the cell that it lies in is measured at all of them. Deviation only; or
+  /// null.
+  const TimeRows* allPositions = nullptr;
+
   /// Neighbours of a node, best first by quadrics, that Deviation compares. 1 or more.
   int candidates = 2;
 };
@@ -97,6 +102,9 @@ struct TriQuadDecimationResult
   /// Deviation: largest distance at each step of a removed node to the cells that took its place
   /// when it was measured last; the steps are those of the positions. Quadrics: empty.
   std::vector<double> stepErrors;
+
+  /// With TriQuadDecimationOptions::allPositions: the distance at the end, at each of their steps.
+  std::vector<double> allStepErrors;
 
   /// Nodes that were never candidates, by reason (a node counts once, first reason that fits).
   Index requestedNodes = 0; ///< flagged in the input's `keep`
@@ -122,6 +130,21 @@ struct TriQuadDecimationResult
 /// Throws nothing: exceptions of the monitor's callback end the call as Cancelled.
 Outcome decimateTriQuad(const TriQuadMeshView& mesh, const TimeRows& positions,
   const TriQuadDecimationOptions& options, Monitor& monitor, TriQuadDecimationResult& result);
+
+/// Decimate with as few steps as it takes: the fewest steps are chosen, one after the other, for
+/// which the error at the others is at most `factor` times the largest error at the chosen ones.
+/// With these alone the decimation can only keep their errors smaller than with all, so the error
+/// over all steps is about `factor` times, at most, what it is if all steps count.
+///
+/// Begins with the first, the last and the step farthest from both; each round decimates with
+/// Deviation, measures all steps, and adds the worst.
+/// @param positions of all steps
+/// @param options their arrays are of all steps
+/// @param factor 1 or more
+/// @param[out] steps those that were chosen, in increasing order
+Outcome decimateTriQuadAutomatically(const TriQuadMeshView& mesh, const TimeRows& positions,
+  const TriQuadDecimationOptions& options, double factor, Monitor& monitor,
+  TriQuadDecimationResult& result, std::vector<int>& steps);
 
 } // namespace undecimate
 

@@ -459,6 +459,52 @@ TEST(TriQuadDecimation, ArraysSteer)
   EXPECT_EQ(largestError(options), without);
 }
 
+// A bump that comes and goes within three of 21 steps.
+TEST(TriQuadDecimation, ChoosesTheStepsThatCount)
+{
+  std::mt19937 random(3);
+  MixedMesh mesh = testing::mixedGrid(24, 24, false, false, 0.3, random);
+  mesh.addSteps(20,
+    [](int step, std::array<double, 3> p)
+    {
+      const double r = std::hypot(p[0] - 8.0, p[1] - 15.0);
+      const double rise = std::max(0.0, 1.0 - 0.5 * std::abs(step - 13));
+      return std::array<double, 3>{ p[0] + 0.3 * step, p[1],
+        p[2] + rise * 2.0 * std::exp(-r * r / 4.0) };
+    });
+  TriQuadDecimationOptions options;
+  options.targetReduction = 0.85;
+  const TimeRows rows = mesh.rows();
+  Monitor monitor;
+  std::vector<int> steps;
+  TriQuadDecimationResult result;
+  const Outcome outcome =
+    decimateTriQuadAutomatically(mesh.view(), rows, options, 1.2, monitor, result, steps);
+  ASSERT_TRUE(outcome) << outcome.message;
+  EXPECT_EQ(monitor.progress(), 1.0);
+  EXPECT_LE(steps.size(), 6U);
+  EXPECT_EQ(std::count(steps.begin(), steps.end(), 13), 1);
+  // The promise, against what all steps give.
+  const auto worst = [](const std::vector<double>& errors)
+  { return *std::max_element(errors.begin(), errors.end()); };
+  options.allPositions = &rows;
+  const Decimated all(mesh, options);
+  ASSERT_EQ(result.allStepErrors.size(), 21U);
+  EXPECT_LE(worst(result.allStepErrors), 1.3 * worst(all.result.allStepErrors));
+  EXPECT_LE(worst(all.result.allStepErrors), 1.001 * all.result.error + 1e-6);
+
+  options.criterion = TriQuadCriterion::Quadrics;
+  options.allPositions = nullptr;
+  std::vector<int> again;
+  ASSERT_TRUE(
+    decimateTriQuadAutomatically(mesh.view(), rows, options, 1.2, monitor, result, again));
+  EXPECT_EQ(again, steps);
+  const Outcome refused =
+    decimateTriQuadAutomatically(mesh.view(), rows, options, 0.9, monitor, result, again);
+  EXPECT_EQ(refused.status, Status::InvalidArgument);
+  EXPECT_NE(refused.message.find("StepFactor"), std::string::npos);
+}
+
 TEST(TriQuadDecimation, TakesEmptyAndTinyMeshes)
 {
   MixedMesh mesh;

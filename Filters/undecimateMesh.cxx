@@ -3,6 +3,8 @@
 
 #include "undecimateMesh.h"
 
+#include "undecimateFaces.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -67,31 +69,53 @@ bool fits(vtkCellArray* cells, vtkIdType pointCount)
 
 std::string UndecimatedMesh::open(vtkPolyData* coarse, PassMonitor& monitor)
 {
-  *this = UndecimatedMesh();
-  if (std::string problem = readRecord(coarse, this->record_, monitor.part(kRead));
+  RecordFields record;
+  if (std::string problem = readRecord(coarse, record, monitor.part(kRead), &this->known_);
       !problem.empty() || monitor.cancelled())
   {
+    *this = UndecimatedMesh();
     return problem;
   }
-  const Outcome outcome = this->cursor_.open(
-    this->record_.view, this->record_.baseTriangles.data(), &monitor.part(kOpened));
-  std::vector<Index>().swap(this->record_.baseTriangles);
-  if (outcome.status == Status::Cancelled)
+  if (this->isOpen_ && shareRecordArrays(record, this->record_))
   {
-    return {};
+    this->record_ = std::move(record);
+    this->shown_ = nullptr;
+    this->original_ = nullptr;
   }
-  if (!outcome)
+  else
   {
-    return outcome.message +
-      (outcome.status == Status::InvalidRecord
-          ? " Run Hash Queue Decimation again, or load an undamaged file."
-          : "");
+    *this = UndecimatedMesh();
+    this->record_ = std::move(record);
+    const Outcome outcome = this->cursor_.open(
+      this->record_.view, this->record_.baseCells.data(), &monitor.part(kOpened));
+    if (outcome.status == Status::Cancelled)
+    {
+      return {};
+    }
+    if (!outcome)
+    {
+      return outcome.message +
+        (outcome.status == Status::InvalidRecord
+            ? " Run the decimation again, or load an undamaged file."
+            : "");
+    }
+    if (this->record_.view.cornersPerCell == 3)
+    {
+      // Their time steps share no record.
+      std::vector<Index>().swap(this->record_.baseCells);
+    }
+    else
+    {
+      this->known_ = knownFingerprints(this->record_);
+    }
   }
   const vtkIdType points = coarse->GetNumberOfPoints();
   if (!fits(coarse->GetVerts(), points) || !fits(coarse->GetLines(), points))
   {
+    *this = UndecimatedMesh();
     return "A vertex cell or a line of the coarse mesh refers to a point that does not exist.";
   }
+  this->isOpen_ = true;
   return {};
 }
 
@@ -101,6 +125,7 @@ bool UndecimatedMesh::show(
   if (steps != this->cursor_.steps())
   {
     this->shown_ = nullptr;
+    this->shownFaces_ = Faces();
     // About half of what is left, whether the record was opened just now or not.
     if (!this->cursor_.moveTo(steps, &monitor.part(0.5 + 0.5 * monitor.reached())))
     {
@@ -119,6 +144,21 @@ bool UndecimatedMesh::show(
   }
   output->ShallowCopy(mesh);
   return true;
+}
+
+vtkIdType UndecimatedMesh::numberOfQuads() const
+{
+  return this->atLevelOne() ? this->originalFaces_.quads : this->shownFaces_.quads;
+}
+
+vtkSmartPointer<vtkCellArray> UndecimatedMesh::makeCells(
+  const Index* corners, ArrayMemory* memory, vtkIdType& quads) const
+{
+  const bool wide = this->record_.header[kWidePolys] != 0;
+  quads = 0;
+  return this->record_.view.cornersPerCell == 3
+    ? makeTriangles(corners, this->cursor_.cellCount(), wide, memory)
+    : makeFaces(corners, this->cursor_.cellCount(), wide, memory, quads);
 }
 
 ArrayPointer UndecimatedMesh::originalPointIds() const
@@ -145,7 +185,7 @@ ArrayPointer UndecimatedMesh::originalPointIds() const
 
 // A level below 1: prefixes of the arrays in record order. Null if it was cancelled.
 vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(
-  vtkPolyData* coarse, ArrayMemory& memory, Monitor& monitor) const
+  vtkPolyData* coarse, ArrayMemory& memory, Monitor& monitor)
 {
   const RecordFields& record = this->record_;
   const Index base = record.view.baseNodeCount;
@@ -155,8 +195,12 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(
     makePoints(join(coarse->GetPoints()->GetData(), base, record.points, back, &memory)));
   mesh->SetVerts(coarse->GetVerts());
   mesh->SetLines(coarse->GetLines());
-  mesh->SetPolys(makeTriangles(
-    this->cursor_.cells(), this->cursor_.cellCount(), record.header[kWidePolys] != 0, &memory));
+  Faces& faces = this->shownFaces_;
+  if (!faces.cells)
+  {
+    faces.cells = this->makeCells(this->cursor_.cells(), &memory, faces.quads);
+  }
+  mesh->SetPolys(faces.cells);
 
   ArrayProgress progress(monitor, record);
   if (!progress.arrayDone())
@@ -184,7 +228,8 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(
   {
     vtkAbstractArray* described = cellData->GetAbstractArray(record.cellArrays[i]);
     arrays[record.cellArrays[i]] = record.cellData[i]
-      ? gather(record.cellData[i], described, leading, this->cursor_.sources(),
+      ? gather(record.cellData[i], described, leading,
+          this->cursor_.sources() ? this->cursor_.sources() : record.view.cellOrder,
           this->cursor_.cellCount(), &memory)
       : ArrayPointer(described);
     if (!progress.arrayDone())
@@ -197,7 +242,7 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(
 }
 
 // Level 1: the input of the decimation, in its own order. Null if it was cancelled.
-vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse, Monitor& monitor) const
+vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse, Monitor& monitor)
 {
   const RecordFields& record = this->record_;
   const RecordView& view = record.view;
@@ -206,15 +251,21 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse, Moni
     record.points, view.stepCount, view.nodeOrder)));
   mesh->SetVerts(mapPoints(coarse->GetVerts(), view.nodeOrder, record.header[kWideVerts] != 0));
   mesh->SetLines(mapPoints(coarse->GetLines(), view.nodeOrder, record.header[kWideLines] != 0));
-  std::vector<Index> corners(std::size_t{ 3 } * view.cellCount);
-  const Index* cells = this->cursor_.cells();
-  for (Index slot = 0; slot < view.cellCount; ++slot)
+  Faces& faces = this->originalFaces_;
+  if (!faces.cells)
   {
-    Index* corner = corners.data() + std::size_t{ 3 } * view.cellOrder[slot];
-    std::transform(cells + std::size_t{ 3 } * slot, cells + std::size_t{ 3 } * (slot + 1), corner,
-      [&view](Index node) { return view.nodeOrder[node]; });
+    const std::size_t size = view.cornersPerCell;
+    std::vector<Index> corners(size * view.cellCount);
+    const Index* cells = this->cursor_.cells();
+    for (Index slot = 0; slot < view.cellCount; ++slot)
+    {
+      std::transform(cells + size * slot, cells + size * (slot + 1),
+        corners.data() + size * view.cellOrder[slot],
+        [&view](Index node) { return node == kNone ? kNone : view.nodeOrder[node]; });
+    }
+    faces.cells = this->makeCells(corners.data(), nullptr, faces.quads);
   }
-  mesh->SetPolys(makeTriangles(corners.data(), view.cellCount, record.header[kWidePolys] != 0));
+  mesh->SetPolys(faces.cells);
 
   ArrayProgress progress(monitor, record);
   if (!progress.arrayDone())
@@ -270,7 +321,17 @@ UndecimatedMesh* UndecimatedMeshCache::find(
   }
   if (found != this->entries_.end())
   {
-    this->entries_.erase(found);
+    // Perhaps the same record at another time.
+    problem = found->mesh->open(input, monitor);
+    if (!problem.empty() || monitor.cancelled())
+    {
+      this->entries_.erase(found);
+      return nullptr;
+    }
+    found->time = input->GetMTime();
+    found->pass = this->pass_;
+    this->entries_.splice(this->entries_.begin(), this->entries_, found);
+    return found->mesh.get();
   }
   this->forget();
   auto mesh = std::make_unique<UndecimatedMesh>();

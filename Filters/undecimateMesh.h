@@ -21,6 +21,7 @@
 #include <memory>
 #include <string>
 
+class vtkCellArray;
 class vtkPolyData;
 
 namespace undecimate
@@ -34,12 +35,16 @@ namespace filters
 /// the output. Below level 1 points and triangles are in record order: a node has the same number
 /// at all these levels. At level 1 they are in the order of the original mesh.
 ///
-/// Memory: the cursor (12 bytes a triangle), the mesh handed out last, and once level 1 was asked
-/// for, the original mesh.
+/// Between time steps that share a record only places and values change: the cursor stays where it
+/// is, and so do the cells.
+///
+/// Memory: the cursor (12 bytes a triangle; 16 bytes a cell in meshes with quads), the mesh handed
+/// out last, and once level 1 was asked for, the original mesh.
 class UndecimatedMesh
 {
 public:
-  /// Decode the record in the field data of `coarse`.
+  /// Decode the record in the field data of `coarse`. If it shares its arrays with the record that
+  /// is open, as another time step does, only its places and values are read.
   /// @param monitor its next parts; if it cancels, the mesh must not be used
   /// @return what is wrong and what to do, or an empty string
   std::string open(vtkPolyData* coarse, PassMonitor& monitor);
@@ -57,17 +62,32 @@ public:
   bool show(vtkPolyData* coarse, Index steps, vtkPolyData* output, ArrayMemory& memory,
     PassMonitor& monitor);
 
+  /// Quads of the level shown last.
+  vtkIdType numberOfQuads() const;
+
   /// Original number of each point of the level shown last: array kOriginalPointIds.
   ArrayPointer originalPointIds() const;
 
 private:
   bool atLevelOne() const { return this->cursor_.steps() == this->cursor_.stepCount(); }
-  vtkSmartPointer<vtkPolyData> prefix(
-    vtkPolyData* coarse, ArrayMemory& memory, Monitor& monitor) const;
-  vtkSmartPointer<vtkPolyData> original(vtkPolyData* coarse, Monitor& monitor) const;
+  vtkSmartPointer<vtkPolyData> prefix(vtkPolyData* coarse, ArrayMemory& memory, Monitor& monitor);
+  vtkSmartPointer<vtkPolyData> original(vtkPolyData* coarse, Monitor& monitor);
+  vtkSmartPointer<vtkCellArray> makeCells(
+    const Index* corners, ArrayMemory* memory, vtkIdType& quads) const;
+
+  /// Cells that stay when only the time changes.
+  struct Faces
+  {
+    vtkSmartPointer<vtkCellArray> cells;
+    vtkIdType quads = 0;
+  };
 
   RecordFields record_;
+  KnownFingerprints known_;
   Undecimation cursor_;
+  bool isOpen_ = false;
+  Faces shownFaces_;                      // of the cursor's level, below level 1
+  Faces originalFaces_;                   // of level 1
   vtkSmartPointer<vtkPolyData> shown_;    // null at level 1
   vtkSmartPointer<vtkPolyData> original_; // made on first use
 };

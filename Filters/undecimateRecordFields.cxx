@@ -4,7 +4,7 @@
 #include "undecimateRecordFields.h"
 
 #include "fingerprint.h"
-#include "hash_queue_decimation.h"
+#include "undecimateFaces.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -118,14 +118,14 @@ void writeArrayFingerprints(vtkPolyData* coarse, int pointArrays, int cellArrays
   }
 }
 
-void writeNodalValues(const Record& record, vtkPolyData* mesh, vtkFieldData* fields)
+// @param numbers original numbers of the removed nodes
+void writeNodalValues(
+  const Index* numbers, vtkIdType removed, vtkPolyData* mesh, vtkFieldData* fields)
 {
-  const Index removed = record.nodeCount - record.baseNodeCount;
   if (removed == 0)
   {
     return;
   }
-  const Index* numbers = record.nodeOrder.data() + record.baseNodeCount;
   write(fields, "Points", gather(pointsOf(mesh), pointsOf(mesh), 0, numbers, removed));
   vtkPointData* data = mesh->GetPointData();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
@@ -136,8 +136,8 @@ void writeNodalValues(const Record& record, vtkPolyData* mesh, vtkFieldData* fie
 }
 
 // The checksum of a record; none if it was cancelled.
-std::optional<std::int64_t> checksum(
-  const std::int64_t* header, vtkFieldData* fields, const MonitorShare& progress)
+std::optional<std::int64_t> checksum(const std::int64_t* header, vtkFieldData* fields,
+  const MonitorShare& progress, const KnownFingerprints* known)
 {
   Fingerprint print;
   print.add(header, kChecksum * sizeof(header[0]));
@@ -155,7 +155,10 @@ std::optional<std::int64_t> checksum(
   for (const std::string& name : names)
   {
     print.add(name);
-    print.add(signedBits(fingerprint(fields->GetAbstractArray(name.c_str()))));
+    vtkAbstractArray* array = fields->GetAbstractArray(name.c_str());
+    const auto found = known ? known->find(array) : KnownFingerprints::const_iterator();
+    const bool isKnown = known && found != known->end() && found->second.first == array->GetMTime();
+    print.add(isKnown ? found->second.second : signedBits(fingerprint(array)));
     done += 1.0;
     if (!progress.update(done / static_cast<double>(names.size())))
     {
@@ -170,7 +173,7 @@ std::optional<std::int64_t> checksum(
 std::string damaged(const std::string& what)
 {
   return "The undecimation record is damaged: " + what +
-    ". Run Hash Queue Decimation again, or load an undamaged file.";
+    ". Run the decimation again, or load an undamaged file.";
 }
 
 // Whether an array is a plain list of numbers of the size and kind of Value.
@@ -277,16 +280,16 @@ private:
   std::string problem_;
 };
 
-std::string readHeader(vtkPolyData* mesh, std::int64_t* header, const MonitorShare& progress)
+std::string readHeader(vtkPolyData* mesh, std::int64_t* header, const MonitorShare& progress,
+  const KnownFingerprints* known)
 {
   vtkFieldData* fields = mesh->GetFieldData();
   vtkAbstractArray* found = fields->GetAbstractArray((kPrefix + "Header").c_str());
   if (!found)
   {
     return "The input has no undecimation record (field data array 'Undecimation.Header'). Connect "
-           "the output Progressive Mesh (port 0) of Hash Queue Decimation directly; its other "
-           "output "
-           "has no record, and filters in between may drop it.";
+           "the output Progressive Mesh (port 0) of Hash Queue Decimation or Tri Quad Decimation "
+           "directly; their other output has no record, and filters in between may drop it.";
   }
   if (!isFlat<std::int64_t>(found) || found->GetNumberOfValues() < 1)
   {
@@ -306,7 +309,7 @@ std::string readHeader(vtkPolyData* mesh, std::int64_t* header, const MonitorSha
       std::to_string(found->GetNumberOfValues()) + " values");
   }
   std::copy_n(values, static_cast<int>(kHeaderSize), header);
-  const std::optional<std::int64_t> sum = checksum(header, fields, progress);
+  const std::optional<std::int64_t> sum = checksum(header, fields, progress, known);
   if (!sum)
   {
     return {};
@@ -314,6 +317,10 @@ std::string readHeader(vtkPolyData* mesh, std::int64_t* header, const MonitorSha
   if (*sum != header[kChecksum])
   {
     return damaged("the checksum of its arrays is wrong");
+  }
+  if (header[kCornersPerCell] > 3 && header[kVersion] < 2)
+  {
+    return damaged("version 1 has " + std::to_string(header[kCornersPerCell]) + " corners a cell");
   }
   for (int field = kNodeCount; field < kPointsFingerprint; ++field)
   {
@@ -530,21 +537,17 @@ void passFieldData(vtkFieldData* from, vtkFieldData* to)
   }
 }
 
-std::int64_t recordChecksum(const std::int64_t* header, vtkFieldData* fields)
+std::int64_t recordChecksum(
+  const std::int64_t* header, vtkFieldData* fields, const KnownFingerprints* known)
 {
-  return *checksum(header, fields, MonitorShare(nullptr));
+  return *checksum(header, fields, MonitorShare(nullptr), known);
 }
 
-void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse,
-  bool hasOriginalPointIds)
+RecordArrays::RecordArrays(Record& record)
+  : fields_(vtkSmartPointer<vtkFieldData>::New())
 {
-  Record& record = result.record;
-  vtkFieldData* fields = coarse->GetFieldData();
-  const int pointArrays = mesh->GetPointData()->GetNumberOfArrays();
-  const int cellArrays = mesh->GetCellData()->GetNumberOfArrays();
-
-  std::vector<std::int64_t> header(kHeaderSize);
-  header[kVersion] = kRecordVersion;
+  std::int64_t* header = this->header_;
+  header[kVersion] = record.cornersPerCell == 3 ? 1 : 2;
   header[kNodeCount] = record.nodeCount;
   header[kCellCount] = record.cellCount;
   header[kBaseNodeCount] = record.baseNodeCount;
@@ -554,6 +557,30 @@ void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyDa
   header[kLostSourceSize] = static_cast<std::int64_t>(record.lostSources.size());
   header[kCornersPerCell] = record.cornersPerCell;
   header[kHasSources] = record.hasSources;
+  vtkFieldData* fields = this->fields_;
+  write<vtkTypeInt32Array>(fields, "NodeOrder", record.nodeOrder);
+  write<vtkTypeInt32Array>(fields, "CellOrder", record.cellOrder);
+  write<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes);
+  write<vtkFloatArray>(fields, "StepErrors", record.stepErrors);
+  write<vtkTypeInt32Array>(fields, "Patches", record.patches);
+  write<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets);
+  write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
+  write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
+  write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = fields->GetAbstractArray(i);
+    this->known_[array] = { array->GetMTime(), signedBits(fingerprint(array)) };
+  }
+}
+
+void RecordArrays::addTo(vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds) const
+{
+  vtkFieldData* fields = coarse->GetFieldData();
+  const int pointArrays = mesh->GetPointData()->GetNumberOfArrays();
+  const int cellArrays = mesh->GetCellData()->GetNumberOfArrays();
+
+  std::vector<std::int64_t> header(this->header_, this->header_ + kHeaderSize);
   header[kVertCount] = mesh->GetNumberOfVerts();
   header[kLineCount] = mesh->GetNumberOfLines();
   header[kWideVerts] = mesh->GetVerts()->IsStorage64Bit();
@@ -565,30 +592,58 @@ void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyDa
   header[kPointsFingerprint] = signedBits(fingerprint(pointsOf(coarse)));
   header[kCellsFingerprint] = cellsFingerprint(coarse);
 
-  writeNodalValues(record, mesh, fields);
+  const vtkIdType removed = header[kNodeCount] - header[kBaseNodeCount];
+  if (auto* order =
+        vtkTypeInt32Array::SafeDownCast(this->fields_->GetAbstractArray("Undecimation.NodeOrder")))
+  {
+    writeNodalValues(order->GetPointer(header[kBaseNodeCount]), removed, mesh, fields);
+  }
   for (int i = 0; i < cellArrays; ++i)
   {
     vtkAbstractArray* array = mesh->GetCellData()->GetAbstractArray(i);
     write(fields, indexed("CellData.", i), share(array, array));
   }
   writeArrayFingerprints(coarse, pointArrays, cellArrays);
-  write<vtkTypeInt32Array>(fields, "NodeOrder", record.nodeOrder);
-  write<vtkTypeInt32Array>(fields, "CellOrder", record.cellOrder);
-  write<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes);
-  write<vtkFloatArray>(fields, "StepErrors", record.stepErrors);
-  write<vtkTypeInt32Array>(fields, "Patches", record.patches);
-  write<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets);
-  write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
-  write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
-  write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
-  header[kChecksum] = recordChecksum(header.data(), fields);
+  for (int i = 0; i < this->fields_->GetNumberOfArrays(); ++i)
+  {
+    fields->AddArray(this->fields_->GetAbstractArray(i));
+  }
+  header[kChecksum] = recordChecksum(header.data(), fields, &this->known_);
   write<vtkTypeInt64Array>(fields, "Header", header);
 }
 
-std::string readRecord(vtkPolyData* mesh, RecordFields& record, Monitor& monitor)
+void writeRecord(Record& record, vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds)
+{
+  RecordArrays(record).addTo(mesh, coarse, hasOriginalPointIds);
+}
+
+bool shareRecordArrays(const RecordFields& a, const RecordFields& b)
+{
+  const RecordView& v = a.view;
+  const RecordView& w = b.view;
+  // Of the same arrays, and so of the same lengths; whoever writes into one makes it newer.
+  return v.stepCount > 0 && v.nodeOrder == w.nodeOrder && v.cellOrder == w.cellOrder &&
+    v.stepShapes == w.stepShapes && v.stepErrors == w.stepErrors && v.patches == w.patches &&
+    v.shapeOffsets == w.shapeOffsets && v.shapes == w.shapes && v.baseSources == w.baseSources &&
+    v.lostSources == w.lostSources && a.header[kCornersPerCell] == b.header[kCornersPerCell] &&
+    a.keptTimes == b.keptTimes && a.baseCells == b.baseCells;
+}
+
+KnownFingerprints knownFingerprints(const RecordFields& fields)
+{
+  KnownFingerprints known;
+  for (const ArrayPointer& array : fields.kept)
+  {
+    known[array] = { array->GetMTime(), signedBits(fingerprint(array)) };
+  }
+  return known;
+}
+
+std::string readRecord(
+  vtkPolyData* mesh, RecordFields& record, Monitor& monitor, const KnownFingerprints* known)
 {
   const MonitorShare progress(&monitor);
-  if (std::string problem = readHeader(mesh, record.header, progress.part(0.0, 0.7));
+  if (std::string problem = readHeader(mesh, record.header, progress.part(0.0, 0.7), known);
       !problem.empty() || monitor.cancelled())
   {
     return problem;
@@ -602,15 +657,23 @@ std::string readRecord(vtkPolyData* mesh, RecordFields& record, Monitor& monitor
   if (!changes.empty())
   {
     return "The mesh was changed after the decimation: " + changes +
-      ". Apply Undecimation to the output of Hash Queue Decimation, and the other filters to the "
-      "output of Undecimation.";
+      ". Apply Undecimation to the output of " +
+      (record.header[kCornersPerCell] == 3 ? "Hash Queue Decimation" : "Tri Quad Decimation") +
+      ", and the other filters to the output of Undecimation.";
   }
+  const std::size_t before = record.kept.size();
   readArrays(reader, record);
   if (reader.problem().empty())
   {
     readValues(mesh, reader, record);
   }
-  record.baseTriangles = readTriangles(mesh->GetPolys(), mesh->GetNumberOfPoints()).corners;
+  record.baseCells = record.view.cornersPerCell == 3
+    ? readTriangles(mesh->GetPolys(), mesh->GetNumberOfPoints()).corners
+    : readFaces(mesh->GetPolys(), mesh->GetNumberOfPoints()).corners;
+  for (std::size_t i = before; i < record.kept.size(); ++i)
+  {
+    record.keptTimes.push_back(record.kept[i]->GetMTime());
+  }
   return reader.problem();
 }
 

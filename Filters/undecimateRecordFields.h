@@ -37,7 +37,9 @@
 #include "monitor.h"
 #include "record.h"
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkPolyData;
@@ -45,26 +47,25 @@ class vtkPolyData;
 namespace undecimate
 {
 
-struct HashQueueDecimationResult;
-
 namespace filters
 {
 
-/// Format version that is written, and the newest that is read.
-constexpr std::int64_t kRecordVersion = 1;
+/// Newest format version. Meshes of triangles are written in version 1; version 2 differs in
+/// that it may have four corners a cell, for meshes of triangles and quads.
+constexpr std::int64_t kRecordVersion = 2;
 
 /// Entries of the array .Header.
 enum HeaderField
 {
-  kVersion = 0,         ///< kRecordVersion; always the first entry
+  kVersion = 0,         ///< 1 or 2, see kRecordVersion; always the first entry
   kNodeCount,           ///< of level 1
-  kCellCount,           ///< triangles of level 1
+  kCellCount,           ///< triangles (and quads) of level 1
   kBaseNodeCount,       ///< of level 0
-  kBaseCellCount,       ///< triangles of level 0
+  kBaseCellCount,       ///< triangles (and quads) of level 0
   kShapeCount,          ///< shapes of steps
   kPatchSize,           ///< values of .Patches
   kLostSourceSize,      ///< values of .LostSources
-  kCornersPerCell,      ///< 3
+  kCornersPerCell,      ///< 3; in version 2 also 4
   kHasSources,          ///< 1 if sources are recorded (there is cell data)
   kVertCount,           ///< vertex cells, the same at all levels
   kLineCount,           ///< line cells, the same at all levels
@@ -89,39 +90,71 @@ bool isRecordArray(const char* name);
 /// Add all arrays of `from` to `to` but those of a record.
 void passFieldData(vtkFieldData* from, vtkFieldData* to);
 
-/// Hash of a header (up to kChecksum) and of the record's other arrays, by name.
-std::int64_t recordChecksum(const std::int64_t* header, vtkFieldData* fields);
+/// Fingerprints of arrays that do not change, by the array and its time: hashing a record anew for
+/// each time step would take as long as handing out the mesh. The arrays must outlive their use.
+using KnownFingerprints = std::map<const vtkAbstractArray*, std::pair<vtkMTimeType, std::int64_t>>;
 
-/// Add the record to the field data of the coarse mesh.
-/// @param result of the decimation; its arrays are freed as they are written
-/// @param mesh the input of the decimation
-/// @param coarse its output: points, cells, point and cell data, complete
-/// @param hasOriginalPointIds the last point array of `coarse` is kOriginalPointIds, added to
-/// mesh's
-void writeRecord(HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse,
-  bool hasOriginalPointIds);
+/// Hash of a header (up to kChecksum) and of the record's other arrays, by name.
+/// @param known fingerprints that need not be computed; or null
+std::int64_t recordChecksum(
+  const std::int64_t* header, vtkFieldData* fields, const KnownFingerprints* known = nullptr);
+
+/// The arrays of a record, which say nothing of places and values: meshes that differ in nothing
+/// else (time steps) share them.
+class RecordArrays
+{
+public:
+  RecordArrays() = default;
+
+  /// @param record its arrays are freed as they are written
+  explicit RecordArrays(Record& record);
+
+  /// Add the record to the field data of a coarse mesh.
+  /// @param mesh the input of the decimation
+  /// @param coarse its output: points, cells, point and cell data, complete
+  /// @param hasOriginalPointIds the last point array of `coarse` is kOriginalPointIds, added to
+  /// mesh's
+  void addTo(vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds) const;
+
+private:
+  std::int64_t header_[kHeaderSize] = {};
+  vtkSmartPointer<vtkFieldData> fields_;
+  KnownFingerprints known_;
+};
+
+/// RecordArrays(record).addTo(mesh, coarse, hasOriginalPointIds), for a mesh without time.
+void writeRecord(Record& record, vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds);
 
 /// A record as it was found in the field data of a mesh. Keeps the arrays alive.
 struct RecordFields
 {
   RecordView view;
   std::int64_t header[kHeaderSize] = {};
-  std::vector<Index> baseTriangles;    ///< of the mesh that was read
+  std::vector<Index> baseCells;        ///< of the mesh that was read, header[kCornersPerCell] each
   ArrayPointer points;                 ///< of the removed nodes; null if there are none
   std::vector<int> pointArrays;        ///< number of each point array in the mesh that was read
   std::vector<ArrayPointer> pointData; ///< its values at the removed nodes; null if there are none
   std::vector<int> cellArrays;         ///< number of each cell array in the mesh that was read
   std::vector<ArrayPointer> cellData;  ///< its values at level 1; null if there are no cells
   std::vector<ArrayPointer> kept;      ///< the arrays that `view` points into
+  std::vector<vtkMTimeType> keptTimes; ///< of those of the record itself
 };
 
 /// Find the record in a mesh's field data, and check that it is whole and belongs to the mesh as it
 /// is. What the record itself says is checked by Undecimation::open().
 /// @param[out] fields complete if nothing is wrong and `monitor` did not cancel
 /// @param monitor progress and cancel; asked after each array
+/// @param known fingerprints that need not be computed; or null
 /// @return what is wrong and what to do, or an empty string
 /// Complexity: O(mesh + record).
-std::string readRecord(vtkPolyData* mesh, RecordFields& fields, Monitor& monitor);
+std::string readRecord(vtkPolyData* mesh, RecordFields& fields, Monitor& monitor,
+  const KnownFingerprints* known = nullptr);
+
+/// Whether two records have the same arrays but for places and values, as they share them.
+bool shareRecordArrays(const RecordFields& a, const RecordFields& b);
+
+/// The fingerprints of a record's arrays that do not change with time.
+KnownFingerprints knownFingerprints(const RecordFields& fields);
 
 } // namespace filters
 } // namespace undecimate

@@ -353,7 +353,7 @@ int vtkHashQueueDecimation::RequestData(
     {
       this->FillOutput(mesh, result, bare);
       output->ShallowCopy(bare);
-      writeRecord(result, mesh, output, this->OriginalPointIds != 0);
+      writeRecord(result.record, mesh, output, this->OriginalPointIds != 0);
       return 1;
     }
     this->ClearResults();

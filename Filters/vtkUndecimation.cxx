@@ -97,7 +97,8 @@ int vtkUndecimation::RequestData(
           output->GetPointData()->AddArray(mesh->originalPointIds());
         }
         this->NumberOfNodes += cursor.nodeCount();
-        this->NumberOfTriangles += cursor.cellCount();
+        this->NumberOfTriangles += cursor.cellCount() - mesh->numberOfQuads();
+        this->NumberOfQuads += mesh->numberOfQuads();
         this->Error = std::max(this->Error, cursor.error());
         return 1;
       }
@@ -126,6 +127,7 @@ void vtkUndecimation::ClearResults()
 {
   this->NumberOfNodes = 0;
   this->NumberOfTriangles = 0;
+  this->NumberOfQuads = 0;
   this->Error = 0.0;
 }
 
@@ -138,5 +140,6 @@ void vtkUndecimation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OriginalPointIds: " << (this->OriginalPointIds ? "On\n" : "Off\n");
   os << indent << "NumberOfNodes: " << this->NumberOfNodes << "\n";
   os << indent << "NumberOfTriangles: " << this->NumberOfTriangles << "\n";
+  os << indent << "NumberOfQuads: " << this->NumberOfQuads << "\n";
   os << indent << "Error: " << this->Error << "\n";
 }

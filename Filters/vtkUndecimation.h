@@ -5,13 +5,13 @@
  * @class   vtkUndecimation
  * @brief   bring removed nodes back: any level between a decimated mesh and the original
  *
- * vtkUndecimation takes the output of vtkHashQueueDecimation (directly, or saved and loaded in one
- * of VTK's XML formats) and gives the mesh at a level: 0 is the coarse mesh, 1 the original mesh.
- * At each level the points are some of the original ones with their exact coordinates and point
- * data.
+ * vtkUndecimation takes the output of vtkHashQueueDecimation or vtkTriQuadDecimation (directly, or
+ * saved and loaded in one of VTK's XML formats) and gives the mesh at a level: 0 is the coarse
+ * mesh, 1 the original mesh. At each level the points are some of the original ones with their
+ * exact coordinates and point data.
  *
  * The field data of the input holds a record of all removals. A node comes back by putting the
- * triangles that were around it in the place of those that filled the hole, and goes again by the
+ * cells that were around it in the place of those that filled the hole, and goes again by the
  * reverse, as in section 2 of
  * S. Krivograd, G. Hren, B. Zalik, A. Jezernik: A Fast Triangular-Mesh Decimation-and-Undecimation
  * Algorithm for Transferring FEM Results via the Web, Journal of Mechanical Engineering 49 (2003).
@@ -30,10 +30,11 @@
  * @section Execution Model
  * The record is decoded once for each input object and its modification time, and the filter stands
  * at the level that it gave last. A change of the level then costs time proportional to the change,
- * and the copying of the output's arrays; nothing upstream runs again. Several inputs stay decoded:
- * all blocks of a composite, and inputs that take turns (at least 8). When the level stays the
- * same, the output's arrays stay the same objects. With a composite input the getters tell sums
- * over the blocks and the largest error.
+ * and the copying of the output's arrays; nothing upstream runs again. A change of the time step of
+ * a mesh from vtkTriQuadDecimation costs the new places and values: the steps share their record.
+ * Several inputs stay decoded: all blocks of a composite, and inputs that take turns (at least 8).
+ * When the level stays the same, the output's arrays stay the same objects. With a composite input
+ * the getters tell sums over the blocks and the largest error.
  *
  * Progress is reported, and an abort is heard, while a record is decoded, while the level changes
  * and after each array. An aborted execution gives empty output (of a composite with VTK 9.1 and
@@ -51,7 +52,7 @@
  * that does not need it.
  *
  * @sa
- * vtkHashQueueDecimation
+ * vtkHashQueueDecimation vtkTriQuadDecimation
  */
 
 #ifndef vtkUndecimation_h
@@ -115,12 +116,13 @@ public:
 
   ///@{
   /**
-   * Results of the last execution: nodes and triangles of the output and its error as the record
-   * has it, in the unit of the criterion of the decimation. Of this process only when there are
-   * several.
+   * Results of the last execution: nodes, triangles and quads of the output and its error as the
+   * record has it, in the unit of the criterion of the decimation. Of this process only when there
+   * are several.
    */
   vtkGetMacro(NumberOfNodes, vtkIdType);
   vtkGetMacro(NumberOfTriangles, vtkIdType);
+  vtkGetMacro(NumberOfQuads, vtkIdType);
   vtkGetMacro(Error, double);
   ///@}
 
@@ -143,6 +145,7 @@ protected:
 
   vtkIdType NumberOfNodes = 0;
   vtkIdType NumberOfTriangles = 0;
+  vtkIdType NumberOfQuads = 0;
   double Error = 0.0;
 
 private:

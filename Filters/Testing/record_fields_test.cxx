@@ -139,9 +139,9 @@ TEST(RecordFields, AMeshThatWasChangedInAFileIsRefused)
 TEST(RecordFields, ANewerVersionIsRefused)
 {
   vtkSmartPointer<vtkPolyData> coarse = smallRecord();
-  header(coarse)[kVersion] = 2;
+  header(coarse)[kVersion] = 3;
   const std::string error = undecimationError(coarse);
-  EXPECT_NE(error.find("format version 2"), std::string::npos) << error;
+  EXPECT_NE(error.find("format version 3"), std::string::npos) << error;
   EXPECT_NE(error.find("Update Undecimate"), std::string::npos) << error;
 }
 

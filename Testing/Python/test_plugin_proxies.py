@@ -10,7 +10,7 @@ from paraview import servermanager, simple, smstate, smtrace
 from undecimate import vtkUndecimateFilters
 
 PLATE = str(pathlib.Path(__file__).resolve().parents[2] / "Data" / "plate_hole.vtp")
-FILTERS = ["HashQueueDecimation", "Undecimation"]
+FILTERS = ["HashQueueDecimation", "TriQuadDecimation", "Undecimation"]
 RESULTS = {
     "HashQueueDecimation": {
         "NumberOfInputNodes",
@@ -20,7 +20,17 @@ RESULTS = {
         "Error",
         "StopReason",
     },
-    "Undecimation": {"NumberOfNodes", "NumberOfTriangles", "Error"},
+    "TriQuadDecimation": {
+        "NumberOfInputNodes",
+        "NumberOfInputCells",
+        "NumberOfNodes",
+        "NumberOfTriangles",
+        "NumberOfQuads",
+        "Error",
+        "StopReason",
+        "UsedSteps",
+    },
+    "Undecimation": {"NumberOfNodes", "NumberOfTriangles", "NumberOfQuads", "Error"},
 }
 
 
@@ -58,8 +68,10 @@ def test_defaults_are_those_of_the_class(name):
     for key, prop in properties(name).items():
         if prop.GetInformationOnly():
             continue
-        if key == "Scalars":
-            assert elements(prop) == [] and instance.GetNumberOfScalars() == 0
+        if key in ("Scalars", "Steps"):
+            assert elements(prop) == [] and getattr(instance, "GetNumberOf" + key)() == 0
+        elif key == "Displacement":
+            assert elements(prop) == [""] and instance.GetDisplacement() is None
         else:
             assert elements(prop) == [getattr(instance, "Get" + key)()], key
         compared += 1
