@@ -13,6 +13,7 @@
 #   field-times  CPU time and memory of the field on grids and the gearbox, into Benchmarks/results
 #   page         Documentation/benchmark.md, its plots and the table of the README from Benchmarks/results
 #   test         tests of the error tool and of the comparison
+#   tri_quad     triangles and quads over time: the paper's three tables, and a million nodes (needs CGAL)
 #   build        only build the drivers and the Python environment
 # Options go to the part: see Benchmarks/README.md. Needs g++, cmake and Python 3 with venv; 'level',
 # 'decimation' and 'field-times' need the project built in build/ (or --build FOLDER).
@@ -90,12 +91,13 @@ run() {
       ;;
     page) "$python" "$here/field_page.py" "$@" ;;
     test) "$python" "$here/metric_test.py" "$@" ;;
+    tri_quad) "$python" "$here/tri_quad.py" --cli "$build/tri_quad_cli" --distance "$build/tri_quad_distance" "$@" ;;
   esac
 }
 
 case $part in
   build) ;;
-  linear | decimation | deviation | field | field-ours | field-times | page | test) run "$part" "$@" ;;
+  linear | decimation | deviation | tri_quad | field | field-ours | field-times | page | test) run "$part" "$@" ;;
   level)
     run level-core
     echo
@@ -124,9 +126,10 @@ case $part in
     save level-filter run level-filter
     save decimation run decimation
     save deviation run deviation --reps 3 --time-each --fresh-rivals --jobs 1
+    save tri_quad run tri_quad
     ;;
   *)
-    sed -n '5,19p' "$0" >&2
+    sed -n '5,20p' "$0" >&2
     exit 2
     ;;
 esac

@@ -5,6 +5,7 @@
 //
 //   tri_quad_cli SERIES [--steps 0,15,30] [--criterion deviation|quadrics] [--error max|sum]
 //                [--targets NODES,...] [--out PREFIX] [--quad-weight W] [--candidates K] [--parts]
+//                [--automatic FACTOR]
 //
 // SERIES: int64 nodes, cells, steps, 1 if there are parts; float32 x, y, z of each node, step after
 // step; int32 cells of four corners, -1 at the last of triangles; int32 part of each cell.
@@ -78,6 +79,7 @@ int main(int argc, char** argv)
   std::vector<int> targets;
   std::string prefix;
   bool useParts = false;
+  double factor = 0.0;
   for (int i = 2; i < argc; ++i)
   {
     const std::string option = argv[i];
@@ -104,6 +106,8 @@ int main(int argc, char** argv)
       prefix = value;
     else if (option == "--quad-weight")
       options.quadWeight = std::atof(value.c_str());
+    else if (option == "--automatic")
+      factor = std::atof(value.c_str());
     else if (option == "--candidates")
       options.candidates = std::atoi(value.c_str());
     else
@@ -155,7 +159,11 @@ int main(int argc, char** argv)
   TriQuadDecimationResult result;
   Monitor monitor;
   const double start = cpuSeconds();
-  const Outcome outcome = decimateTriQuad(mesh, rows, options, monitor, result);
+  std::vector<int> used(stepCount);
+  std::iota(used.begin(), used.end(), 0);
+  const Outcome outcome = factor > 0.0
+    ? decimateTriQuadAutomatically(mesh, rows, options, factor, monitor, result, used)
+    : decimateTriQuad(mesh, rows, options, monitor, result);
   const double seconds = cpuSeconds() - start;
   if (!outcome)
   {
@@ -168,12 +176,18 @@ int main(int argc, char** argv)
   }
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
+  std::string usedSteps;
+  for (const int step : used)
+  {
+    usedSteps += (usedSteps.empty() ? "" : ", ") + std::to_string(steps[step]);
+  }
   std::printf(
-    "{\"nodes\": %lld, \"cells\": %lld, \"steps\": %d, \"cpu\": %.4f, \"read\": %.4f, "
+    "{\"used\": \"%s\", \"nodes\": %lld, \"cells\": %lld, \"steps\": %d, \"cpu\": %.4f, \"read\": "
+    "%.4f, "
     "\"peak_kib\": %ld, \"record\": %zu, \"shapes\": %zu, \"stop\": \"%s\", \"levels\": [",
-    static_cast<long long>(header[0]), static_cast<long long>(header[1]), stepCount, seconds,
-    readSeconds, usage.ru_maxrss, result.record.byteSize(), result.record.shapes.size(),
-    toString(result.stopReason));
+    usedSteps.c_str(), static_cast<long long>(header[0]), static_cast<long long>(header[1]),
+    stepCount, seconds, readSeconds, usage.ru_maxrss, result.record.byteSize(),
+    result.record.shapes.size(), toString(result.stopReason));
   std::sort(targets.begin(), targets.end());
   for (std::size_t i = 0; i < targets.size(); ++i)
   {

@@ -89,7 +89,7 @@ struct TriQuadDecimationOptions
   const TimeRows* allPositions = nullptr;
 
   /// Neighbours of a node, best first by quadrics, that Deviation compares. 1 or more.
-  int candidates = 2;
+  int candidates = 1;
 };
 
 struct TriQuadDecimationResult

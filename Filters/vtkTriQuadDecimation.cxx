@@ -142,6 +142,7 @@ struct vtkTriQuadDecimation::Internals
   bool fetching = false; // all steps are there; the requested one is asked for once more
   std::size_t walked = 0;
   TimeWalk walk;
+  std::string problem;                    // why there is no walk
   vtkSmartPointer<vtkPolyData> requested; // the input at the requested time, if it was met
 
   // What was made of them, and for which state of the pipeline.
@@ -342,12 +343,13 @@ int vtkTriQuadDecimation::RequestUpdateExtent(
     in.stopWalking();
     in.key = now;
     in.keyPieces = pieces;
-    const std::string problem =
+    // Told by RequestData(), which the executive calls in any case.
+    in.problem =
       in.walk.start(walkOptions(this, in.scalars, in.steps), static_cast<int>(times.size()));
-    if (!problem.empty())
+    if (!in.problem.empty())
     {
-      vtkErrorMacro(<< problem);
-      return 0;
+      in.walk = TimeWalk();
+      return 1;
     }
     in.walking = true;
   }
@@ -441,6 +443,10 @@ int vtkTriQuadDecimation::RequestData(
         " time steps. Apply Merge Blocks and Extract Surface first, so that there is one mesh.");
     }
     const bool withTime = times.size() > 1;
+    if (withTime && !in.walking && !in.decimated)
+    {
+      require(in.problem.empty() ? "The time steps of the input were not asked for." : in.problem);
+    }
     auto mesh = vtkSmartPointer<vtkPolyData>::New();
     mesh->ShallowCopy(input);
     if (!mesh->GetPoints())
