@@ -927,6 +927,7 @@ std::vector<double> TriQuadCost::distances(const TimeRows& positions) const
     }
   }
   std::vector<double> distances;
+  distances.reserve(positions.steps());
   for (int step = 0; step < positions.steps(); ++step)
   {
     distances.push_back(std::sqrt(static_cast<double>(largestSquares[step])));

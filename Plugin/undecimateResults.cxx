@@ -20,8 +20,8 @@ bool isOurs(vtkSMProxy* proxy)
   const char* group = proxy->GetXMLGroup();
   const char* name = proxy->GetXMLName();
   return group && name && std::strcmp(group, "filters") == 0 &&
-    (std::strcmp(name, "HashQueueDecimation") == 0 ||
-      std::strcmp(name, "TriQuadDecimation") == 0 || std::strcmp(name, "Undecimation") == 0);
+    (std::strcmp(name, "HashQueueDecimation") == 0 || std::strcmp(name, "TriQuadDecimation") == 0 ||
+      std::strcmp(name, "Undecimation") == 0);
 }
 
 void onUpdated(vtkObject* caller, unsigned long, void*, void*)

@@ -209,6 +209,7 @@ inline MixedMesh mixedTJoint(int n)
       mesh.addNode(i, j, 0.0);
     }
   }
+  const int middle = n / 2;
   const auto floor = [n](int i, int j) { return static_cast<Index>(j * (n + 1) + i); };
   std::vector<std::vector<Index>> wall(1);
   for (int i = 0; i <= n; ++i)
@@ -220,7 +221,7 @@ inline MixedMesh mixedTJoint(int n)
     wall.emplace_back();
     for (int i = 0; i <= n; ++i)
     {
-      wall[k].push_back(mesh.addNode(i, n / 2, k));
+      wall[k].push_back(mesh.addNode(i, middle, k));
     }
   }
   for (int j = 0; j < n; ++j)
