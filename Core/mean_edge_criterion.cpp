@@ -29,7 +29,8 @@ MeanEdgeCriterion::MeanEdgeCriterion(TriangleTopology& topology, const NodalArra
       if (this->scalar_)
       {
         const double value = (array->values[i] - range.lowest[0]) * this->scale_;
-        node.value = std::isfinite(value) ? static_cast<std::int32_t>(value * kUnit + 0.5) : -1;
+        node.value =
+          std::isfinite(value) ? static_cast<std::int32_t>(std::lround(value * kUnit)) : -1;
         node.kept = node.kept || node.value < 0;
       }
       else if (!isFinite(*array, i))
