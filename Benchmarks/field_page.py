@@ -31,6 +31,8 @@ FAULT_NAMES = dict(zip(FAULTS, ("flipped triangles", "folded edges", "degenerate
                                 "Euler characteristic changed")))
 MARKERS = "osv^D<>Pp*"
 
+LICENCE = """<!-- SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors -->
+<!-- SPDX-License-Identifier: BSD-3-Clause -->"""
 
 def table(head, rows, numbers=True):
     """Markdown; columns after the first that hold numbers alone are set right."""
@@ -156,7 +158,12 @@ def figure(width, height, rows=1, columns=1):
 
 
 def save(plot, name):
-    plot.savefig(os.path.join(IMAGES, name), metadata={"Date": None}, bbox_inches="tight")
+    path = os.path.join(IMAGES, name)
+    plot.savefig(path, metadata={"Date": None}, bbox_inches="tight")
+    with open(path, encoding="utf-8") as file:
+        first, rest = file.read().split("\n", 1)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"{first}\n{LICENCE}\n{rest}")
     plot.close()
 
 

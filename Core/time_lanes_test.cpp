@@ -305,10 +305,13 @@ TEST_P(TimeLanes, RefuseCellsThatTurnOrFold)
   const Rows b = at(1, 0, 0);
   const Rows c = at(1, 1, 0);
   const Rows d = at(0, 1, 0);
-  const auto may = [lanes](std::vector<const Rows*> before, std::vector<const Rows*> now)
+  const auto may = [lanes](
+                     const std::vector<const Rows*>& before, const std::vector<const Rows*>& now)
   {
     std::vector<const float*> old;
     std::vector<const float*> fresh;
+    old.reserve(before.size());
+    fresh.reserve(now.size());
     for (const Rows* rows : before)
     {
       old.push_back(rows->data());
