@@ -164,13 +164,13 @@ vtkTriQuadDecimation::vtkTriQuadDecimation()
   : Private(std::make_unique<Internals>(this))
 {
   this->SetNumberOfOutputPorts(2);
-  this->SetPartArray("part");
+  this->vtkTriQuadDecimation::SetPartArray("part");
 }
 
 vtkTriQuadDecimation::~vtkTriQuadDecimation()
 {
-  this->SetDisplacement(nullptr);
-  this->SetPartArray(nullptr);
+  this->vtkTriQuadDecimation::SetDisplacement(nullptr);
+  this->vtkTriQuadDecimation::SetPartArray(nullptr);
 }
 
 void vtkTriQuadDecimation::AddScalars(const char* name)
