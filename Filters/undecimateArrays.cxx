@@ -250,6 +250,33 @@ void fillTriangles(vtkCellArray* cells, const Index* corners, vtkIdType count, A
   cells->SetData(offsets.Get(), connectivity.Get());
 }
 
+// Of triangles and quads: four corners a cell, kNone at the last of triangles.
+template <class ArrayType>
+void fillFaces(
+  vtkCellArray* cells, const Index* corners, vtkIdType count, vtkIdType quads, ArrayMemory* memory)
+{
+  using Value = typename ArrayType::ValueType;
+  vtkNew<ArrayType> offsets;
+  vtkNew<ArrayType> connectivity;
+  Value* offset = resize(offsets.Get(), count + 1, memory);
+  Value* first = resize(connectivity.Get(), 3 * count + quads, memory);
+  Value* corner = first;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    const Index* from = corners + 4 * cell;
+    offset[cell] = static_cast<Value>(corner - first);
+    *corner++ = from[0];
+    *corner++ = from[1];
+    *corner++ = from[2];
+    if (from[3] != kNone)
+    {
+      *corner++ = from[3];
+    }
+  }
+  offset[count] = static_cast<Value>(corner - first);
+  cells->SetData(offsets.Get(), connectivity.Get());
+}
+
 template <class ArrayType, class Offset>
 void fillMapped(vtkCellArray* cells, const Offset* offsets, const Offset* connectivity,
   vtkIdType count, const Index* map)
@@ -521,19 +548,18 @@ std::string listNames(vtkFieldData* arrays)
   return names.empty() ? "none" : names;
 }
 
-TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount)
+FaceCells readFaces(vtkCellArray* cells, vtkIdType pointCount, int cornersPerCell)
 {
-  TriangleCells result;
+  FaceCells result;
   const vtkIdType count = cells->GetNumberOfCells();
   if (count == 0)
   {
     return result;
   }
-  result.corners.resize(3 * static_cast<std::size_t>(count));
+  result.corners.resize(static_cast<std::size_t>(cornersPerCell) * count, kNone);
   visitCells(cells,
     [&](const auto* offsets, const auto* connectivity, vtkIdType size)
     {
-      Index* corner = result.corners.data();
       for (vtkIdType cell = 0; cell < count; ++cell)
       {
         const vtkIdType begin = offsets[cell];
@@ -544,10 +570,9 @@ TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount)
           result.badPoint = end;
           return;
         }
-        if (end - begin != 3)
-        {
-          ++result.otherCells;
-        }
+        const bool fits = end - begin == 3 || end - begin == cornersPerCell;
+        result.otherCells += !fits;
+        Index* corner = result.corners.data() + cornersPerCell * cell;
         for (vtkIdType i = begin; i < end; ++i)
         {
           const vtkIdType point = connectivity[i];
@@ -557,7 +582,7 @@ TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount)
             result.badPoint = point;
             return;
           }
-          if (result.otherCells == 0)
+          if (fits)
           {
             *corner++ = static_cast<Index>(point);
           }
@@ -601,17 +626,34 @@ TriangleCorners trianglesInPlace(vtkCellArray* cells, vtkIdType pointCount)
   return corners;
 }
 
-vtkSmartPointer<vtkCellArray> makeTriangles(
-  const Index* corners, vtkIdType count, bool wide, ArrayMemory* memory)
+vtkSmartPointer<vtkCellArray> makeFaces(const Index* corners, int cornersPerCell, vtkIdType count,
+  bool wide, ArrayMemory* memory, vtkIdType& quads)
 {
+  quads = 0;
+  for (vtkIdType cell = 0; cornersPerCell == 4 && cell < count; ++cell)
+  {
+    quads += corners[4 * cell + 3] != kNone;
+  }
   auto cells = vtkSmartPointer<vtkCellArray>::New();
+  const auto fill = [&](auto* type)
+  {
+    using ArrayType = std::remove_pointer_t<decltype(type)>;
+    if (cornersPerCell == 3)
+    {
+      fillTriangles<ArrayType>(cells, corners, count, memory);
+    }
+    else
+    {
+      fillFaces<ArrayType>(cells, corners, count, quads, memory);
+    }
+  };
   if (wide)
   {
-    fillTriangles<vtkCellArray::ArrayType64>(cells, corners, count, memory);
+    fill(static_cast<vtkCellArray::ArrayType64*>(nullptr));
   }
   else
   {
-    fillTriangles<vtkCellArray::ArrayType32>(cells, corners, count, memory);
+    fill(static_cast<vtkCellArray::ArrayType32*>(nullptr));
   }
   return cells;
 }
@@ -635,7 +677,8 @@ vtkSmartPointer<vtkCellArray> mapPoints(vtkCellArray* cells, const Index* map, b
   return mapped;
 }
 
-bool flagPoints(vtkCellArray* cells, std::vector<unsigned char>& flags)
+bool flagPoints(
+  vtkCellArray* cells, std::vector<unsigned char>& flags, const unsigned char* cellFlags)
 {
   bool good = true;
   const vtkIdType count = cells->GetNumberOfCells();
@@ -646,15 +689,19 @@ bool flagPoints(vtkCellArray* cells, std::vector<unsigned char>& flags)
   visitCells(cells,
     [&](const auto* offsets, const auto* connectivity, vtkIdType size)
     {
-      const vtkIdType used = static_cast<vtkIdType>(offsets[count]);
-      good = used <= size;
-      for (vtkIdType i = 0; good && i < used; ++i)
+      for (vtkIdType cell = 0; good && cell < count; ++cell)
       {
-        const vtkIdType point = connectivity[i];
-        good = point >= 0 && point < static_cast<vtkIdType>(flags.size());
-        if (good)
+        const unsigned char flag = cellFlags ? cellFlags[cell] : 1;
+        const vtkIdType end = offsets[cell + 1];
+        good = offsets[cell] >= 0 && end <= size;
+        for (vtkIdType i = offsets[cell]; good && i < end; ++i)
         {
-          flags[point] = 1;
+          const vtkIdType point = connectivity[i];
+          good = point >= 0 && point < static_cast<vtkIdType>(flags.size());
+          if (good)
+          {
+            flags[point] |= flag;
+          }
         }
       }
     });

@@ -70,17 +70,19 @@ std::string typeName(vtkAbstractArray* array);
 /// The names of all arrays, quoted and separated by commas, or "none".
 std::string listNames(vtkFieldData* arrays);
 
-/// Numbers of cells, corners first to last, in core's width.
-struct TriangleCells
+/// Numbers of triangles, or of triangles and quads, in core's width.
+struct FaceCells
 {
-  std::vector<Index> corners; ///< 3 a triangle
-  vtkIdType otherCells = 0;   ///< cells that are not triangles; if any, corners is not complete
+  std::vector<Index> corners; ///< 3 or 4 a cell; of 4, kNone at the last of triangles
+  vtkIdType otherCells = 0;   ///< cells of other sizes; if any, corners is not complete
   vtkIdType badCell = -1;     ///< first cell with a point that does not exist, and that point
   vtkIdType badPoint = -1;
 };
 
-/// Read triangles, checking that each point number is in [0, pointCount). Complexity: O(cells).
-TriangleCells readTriangles(vtkCellArray* cells, vtkIdType pointCount);
+/// Read cells, checking that each point number is in [0, pointCount).
+/// @param cornersPerCell 3: triangles; 4: triangles and quads
+/// Complexity: O(cells).
+FaceCells readFaces(vtkCellArray* cells, vtkIdType pointCount, int cornersPerCell);
 
 /// The corners of triangles where they lie, in the width of the cell array.
 struct TriangleCorners
@@ -90,21 +92,25 @@ struct TriangleCorners
 };
 
 /// The corners of the cells, or nothing if there are none, if other cells than triangles are among
-/// them, or if one has a point outside [0, pointCount): readTriangles() says more then.
+/// them, or if one has a point outside [0, pointCount): readFaces() says more then.
 TriangleCorners trianglesInPlace(vtkCellArray* cells, vtkIdType pointCount);
 
-/// A cell array of triangles.
-/// @param corners 3 * count point numbers
+/// A cell array of triangles, or of triangles and quads.
+/// @param corners cornersPerCell * count point numbers; of four, kNone at the last of triangles
+/// @param cornersPerCell 3 or 4
 /// @param wide 64-bit storage, else 32-bit
 /// @param memory as for newLike()
-vtkSmartPointer<vtkCellArray> makeTriangles(
-  const Index* corners, vtkIdType count, bool wide, ArrayMemory* memory = nullptr);
+/// @param[out] quads number of quads
+vtkSmartPointer<vtkCellArray> makeFaces(const Index* corners, int cornersPerCell, vtkIdType count,
+  bool wide, ArrayMemory* memory, vtkIdType& quads);
 
 /// The same cells with each point number p replaced by map[p]; storage width as asked.
 vtkSmartPointer<vtkCellArray> mapPoints(vtkCellArray* cells, const Index* map, bool wide);
 
-/// Set flags[p] for each point p of the cells. False if a cell has a point outside [0, pointCount).
-bool flagPoints(vtkCellArray* cells, std::vector<unsigned char>& flags);
+/// Add a flag to flags[p] for each point p of the cells: 1, or cellFlags[c] for each cell c that
+/// has it. False if a cell has a point outside [0, flags.size()).
+bool flagPoints(
+  vtkCellArray* cells, std::vector<unsigned char>& flags, const unsigned char* cellFlags = nullptr);
 
 /// Hash of the cells: sizes and point numbers, whatever the storage width.
 std::uint64_t fingerprint(vtkCellArray* cells);

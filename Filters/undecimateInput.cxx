@@ -3,6 +3,8 @@
 
 #include "undecimateInput.h"
 
+#include "array_range.h"
+
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -30,13 +32,6 @@ namespace filters
 
 namespace
 {
-
-constexpr int kMaximumComponents = 9;
-
-std::string counted(vtkIdType number, const std::string& word)
-{
-  return std::to_string(number) + " " + word + (number == 1 ? "" : "s");
-}
 
 template <class From, class To>
 void convert(const void* from, std::vector<To>& to)
@@ -138,6 +133,11 @@ vtkSmartPointer<vtkCellArray> cutFaces(
 }
 
 } // namespace
+
+std::string counted(vtkIdType number, const std::string& word)
+{
+  return std::to_string(number) + " " + word + (number == 1 ? "" : "s");
+}
 
 std::string OtherFaces::describe() const
 {
@@ -241,19 +241,19 @@ std::string MeshInput::read(vtkPolyData* mesh)
   this->view_.wideTriangles = corners.wide;
   if (!corners.narrow && !corners.wide)
   {
-    TriangleCells cells = readTriangles(mesh->GetPolys(), points);
-    if (cells.badCell >= 0)
+    FaceCells cells = readFaces(mesh->GetPolys(), points, 3);
+    if (std::string problem = badFace(cells, points); !problem.empty())
     {
-      return "Face " + std::to_string(cells.badCell) + " of the input refers to point " +
-        std::to_string(cells.badPoint) + ", but there are " + counted(points, "point") +
-        ". Repair the cells of the input.";
+      return problem;
     }
     this->triangles_ = std::move(cells.corners);
     this->view_.triangles = this->triangles_.data();
   }
   this->view_.nodeCount = points;
   this->view_.triangleCount = faces;
-  return this->readKept(mesh);
+  std::string problem = readKept(mesh, this->keep_);
+  this->view_.keep = this->keep_.empty() ? nullptr : this->keep_.data();
+  return problem;
 }
 
 void MeshInput::readPoints(vtkPolyData* mesh)
@@ -277,45 +277,6 @@ void MeshInput::readPoints(vtkPolyData* mesh)
     readValues(points, this->coordinates_);
     this->view_.pointsDouble = this->coordinates_.data();
   }
-}
-
-// Nodes that must stay: those of vertex cells and lines, which no level changes, and ghosts, which
-// are another piece's.
-std::string MeshInput::readKept(vtkPolyData* mesh)
-{
-  vtkUnsignedCharArray* pointGhosts = mesh->GetPointGhostArray();
-  vtkUnsignedCharArray* cellGhosts = mesh->GetCellGhostArray();
-  const vtkIdType before = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
-  if (before == 0 && !pointGhosts && !cellGhosts)
-  {
-    return {};
-  }
-  this->keep_.assign(mesh->GetNumberOfPoints(), 0);
-  if (pointGhosts)
-  {
-    const unsigned char* flags = pointGhosts->GetPointer(0);
-    std::copy(flags, flags + this->keep_.size(), this->keep_.begin());
-  }
-  for (vtkCellArray* cells : { mesh->GetVerts(), mesh->GetLines() })
-  {
-    if (!flagPoints(cells, this->keep_))
-    {
-      return "A vertex cell or a line of the input refers to a point outside the " +
-        counted(mesh->GetNumberOfPoints(), "point") + ". Repair the cells of the input.";
-    }
-  }
-  if (cellGhosts)
-  {
-    const unsigned char* ghosts = cellGhosts->GetPointer(0) + before;
-    for (std::int64_t i = 0; i < 3 * this->view_.triangleCount; ++i)
-    {
-      const std::int64_t point =
-        this->view_.wideTriangles ? this->view_.wideTriangles[i] : this->view_.triangles[i];
-      this->keep_[point] |= ghosts[i / 3];
-    }
-  }
-  this->view_.keep = this->keep_.data();
-  return {};
 }
 
 std::string checkSizes(vtkPolyData* mesh)
@@ -357,28 +318,80 @@ std::string checkFaces(vtkPolyData* mesh)
   return {};
 }
 
-std::string MeshInput::addArray(vtkPolyData* mesh, const std::string& name)
+std::string badFace(const FaceCells& cells, vtkIdType pointCount)
+{
+  return cells.badCell < 0 ? ""
+                           : "Face " + std::to_string(cells.badCell) +
+      " of the input refers to point " + std::to_string(cells.badPoint) + ", but there are " +
+      counted(pointCount, "point") + ". Repair the cells of the input.";
+}
+
+std::string readKept(vtkPolyData* mesh, std::vector<unsigned char>& keep)
+{
+  keep.clear();
+  vtkUnsignedCharArray* pointGhosts = mesh->GetPointGhostArray();
+  vtkUnsignedCharArray* cellGhosts = mesh->GetCellGhostArray();
+  const vtkIdType before = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
+  if (before == 0 && !pointGhosts && !cellGhosts)
+  {
+    return {};
+  }
+  keep.assign(mesh->GetNumberOfPoints(), 0);
+  if (pointGhosts)
+  {
+    std::copy_n(pointGhosts->GetPointer(0), keep.size(), keep.begin());
+  }
+  if (!flagPoints(mesh->GetVerts(), keep) || !flagPoints(mesh->GetLines(), keep))
+  {
+    return "A vertex cell or a line of the input refers to a point outside the " +
+      counted(mesh->GetNumberOfPoints(), "point") + ". Repair the cells of the input.";
+  }
+  if (cellGhosts)
+  {
+    flagPoints(mesh->GetPolys(), keep, cellGhosts->GetPointer(0) + before);
+  }
+  return {};
+}
+
+void dropAssociation(vtkPolyData* mesh, std::vector<std::string>& names)
+{
+  if (!names.empty() && names.front() == "POINTS" && !mesh->GetPointData()->HasArray("POINTS"))
+  {
+    names.erase(names.begin());
+  }
+}
+
+std::string findSteeringArray(vtkPolyData* mesh, const std::string& name, vtkDataArray*& array)
 {
   vtkPointData* data = mesh->GetPointData();
   vtkAbstractArray* found =
     name.empty() ? data->GetScalars() : data->GetAbstractArray(name.c_str());
-  vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!found)
   {
     return (name.empty() ? "No Scalars are named, and the input has no active point scalars"
                          : "The input has no point array '" + name + "' to use as Scalars") +
       ". Its point arrays are: " + listNames(data) + ".";
   }
+  array = vtkDataArray::SafeDownCast(found);
   const int components = found->GetNumberOfComponents();
   if (!array || components < 1 || components > kMaximumComponents)
   {
     return "Point array '" + name + "' (" + typeName(found) + ", " +
-      counted(components, "component") +
-      ") cannot be used as Scalars: numbers with 1 to 9 "
-      "components are needed.";
+      counted(components, "component") + ") cannot be used as Scalars: numbers with 1 to " +
+      std::to_string(kMaximumComponents) + " components are needed.";
+  }
+  return {};
+}
+
+std::string MeshInput::addArray(vtkPolyData* mesh, const std::string& name)
+{
+  vtkDataArray* array = nullptr;
+  if (std::string problem = findSteeringArray(mesh, name, array); !problem.empty())
+  {
+    return problem;
   }
   NodalArrayView view;
-  view.components = components;
+  view.components = array->GetNumberOfComponents();
   view.name = name;
   if (auto* floats = vtkFloatArray::SafeDownCast(array))
   {

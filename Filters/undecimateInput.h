@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+class vtkDataArray;
 class vtkPolyData;
 
 namespace undecimate
@@ -52,7 +53,30 @@ std::string checkSizes(vtkPolyData* mesh);
 /// What is wrong with the points of a mesh's polygons and strips; empty if nothing.
 std::string checkFaces(vtkPolyData* mesh);
 
-/// The mesh as Core's decimators want it. Points and arrays that fit are used where they lie.
+/// "1 point", "3 points"
+std::string counted(vtkIdType number, const std::string& word);
+
+/// What is wrong with cells that were read; empty if nothing.
+std::string badFace(const FaceCells& cells, vtkIdType pointCount);
+
+/// Nodes that must stay: those of vertex cells and lines, which no level changes, and ghosts, which
+/// are another piece's.
+/// @param mesh its faces were checked
+/// @param[out] keep a flag for each point; empty if all may go
+/// @return what is wrong, or an empty string
+std::string readKept(vtkPolyData* mesh, std::vector<unsigned char>& keep);
+
+/// Take the word POINTS from the front of a list of point arrays: ParaView's Python names arrays of
+/// other filters as ['POINTS', name]. It stays if there is such an array.
+void dropAssociation(vtkPolyData* mesh, std::vector<std::string>& names);
+
+/// Find a point array that steers; an empty name stands for the active point scalars.
+/// @param[out] array numbers of 1 to 9 components
+/// @return what is wrong, or an empty string
+std::string findSteeringArray(vtkPolyData* mesh, const std::string& name, vtkDataArray*& array);
+
+/// The mesh as Core's decimators of triangles want it. Points and arrays that fit are used where
+/// they lie.
 class MeshInput
 {
 public:
@@ -69,7 +93,6 @@ public:
 
 private:
   void readPoints(vtkPolyData* mesh);
-  std::string readKept(vtkPolyData* mesh);
 
   TriangleMeshView view_;
   std::vector<NodalArrayView> arrays_;

@@ -3,8 +3,6 @@
 
 #include "undecimateMesh.h"
 
-#include "undecimateFaces.h"
-
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -155,10 +153,8 @@ vtkSmartPointer<vtkCellArray> UndecimatedMesh::makeCells(
   const Index* corners, ArrayMemory* memory, vtkIdType& quads) const
 {
   const bool wide = this->record_.header[kWidePolys] != 0;
-  quads = 0;
-  return this->record_.view.cornersPerCell == 3
-    ? makeTriangles(corners, this->cursor_.cellCount(), wide, memory)
-    : makeFaces(corners, this->cursor_.cellCount(), wide, memory, quads);
+  return makeFaces(
+    corners, this->record_.view.cornersPerCell, this->cursor_.cellCount(), wide, memory, quads);
 }
 
 ArrayPointer UndecimatedMesh::originalPointIds() const

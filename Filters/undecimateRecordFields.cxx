@@ -4,7 +4,6 @@
 #include "undecimateRecordFields.h"
 
 #include "fingerprint.h"
-#include "undecimateFaces.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -667,9 +666,8 @@ std::string readRecord(
   {
     readValues(mesh, reader, record);
   }
-  record.baseCells = record.view.cornersPerCell == 3
-    ? readTriangles(mesh->GetPolys(), mesh->GetNumberOfPoints()).corners
-    : readFaces(mesh->GetPolys(), mesh->GetNumberOfPoints()).corners;
+  record.baseCells =
+    readFaces(mesh->GetPolys(), mesh->GetNumberOfPoints(), record.view.cornersPerCell).corners;
   for (std::size_t i = before; i < record.kept.size(); ++i)
   {
     record.keptTimes.push_back(record.kept[i]->GetMTime());

@@ -3,7 +3,6 @@
 
 #include "undecimateTimeWalk.h"
 
-#include "undecimateFaces.h"
 #include "undecimateInput.h"
 
 #include "vtkCellArray.h"
@@ -13,7 +12,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
@@ -29,11 +27,6 @@ namespace filters
 
 namespace
 {
-
-std::string counted(vtkIdType number, const std::string& word)
-{
-  return std::to_string(number) + " " + word + (number == 1 ? "" : "s");
-}
 
 std::vector<double> valuesOf(vtkDataArray* array)
 {
@@ -195,22 +188,21 @@ std::string TimeWalk::readMesh(vtkPolyData* mesh)
     return "The input has " + others.describe() +
       "; the decimation takes triangles and quads. Apply the filter Triangulate first.";
   }
-  FaceCells cells = readFaces(mesh->GetPolys(), points);
-  if (cells.badCell >= 0)
+  FaceCells cells = readFaces(mesh->GetPolys(), points, kTriQuadCorners);
+  if (std::string problem = badFace(cells, points); !problem.empty())
   {
-    return "Face " + std::to_string(cells.badCell) + " of the input refers to point " +
-      std::to_string(cells.badPoint) + ", but there are " + counted(points, "point") +
-      ". Repair the cells of the input.";
+    return problem;
   }
   this->topology_.read(mesh);
   this->corners_ = std::move(cells.corners);
   this->view_.nodeCount = points;
   this->view_.cells = this->corners_.data();
   this->view_.cellCount = faces;
-  if (std::string problem = this->readKept(mesh); !problem.empty())
+  if (std::string problem = readKept(mesh, this->keep_); !problem.empty())
   {
     return problem;
   }
+  this->view_.keep = this->keep_.empty() ? nullptr : this->keep_.data();
   if (std::string problem = this->readParts(mesh); !problem.empty())
   {
     return problem;
@@ -222,67 +214,17 @@ std::string TimeWalk::readMesh(vtkPolyData* mesh)
   {
     this->candidate_ = std::make_unique<TimeRows>(nodes, 3, 1);
   }
-  // ParaView's Python names arrays of other filters as ['POINTS', name].
-  std::vector<std::string>& names = this->options_.scalars;
-  if (!names.empty() && names.front() == "POINTS" && !mesh->GetPointData()->HasArray("POINTS"))
+  dropAssociation(mesh, this->options_.scalars);
+  for (const std::string& name : this->options_.scalars)
   {
-    names.erase(names.begin());
-  }
-  for (const std::string& name : names)
-  {
-    vtkAbstractArray* found = mesh->GetPointData()->GetAbstractArray(name.c_str());
-    vtkDataArray* array = vtkDataArray::SafeDownCast(found);
-    if (!found)
+    vtkDataArray* array = nullptr;
+    if (std::string problem = findSteeringArray(mesh, name, array); !problem.empty())
     {
-      return "The input has no point array '" + name +
-        "' to use as Scalars. Its point arrays are: " + listNames(mesh->GetPointData()) + ".";
+      return problem;
     }
-    const int components = found->GetNumberOfComponents();
-    if (!array || components < 1 || components > TimeRows::kMaximumComponents)
-    {
-      return "Point array '" + name + "' (" + typeName(found) + ", " +
-        counted(components, "component") +
-        ") cannot be used as Scalars: numbers with 1 to 9 components are needed.";
-    }
-    this->arrays_.emplace_back(nodes, components, lanes);
+    this->arrays_.emplace_back(nodes, array->GetNumberOfComponents(), lanes);
     this->origins_.emplace_back();
   }
-  return {};
-}
-
-// Nodes that must stay: those of vertex cells and lines, which no level changes, and ghosts, which
-// are another piece's.
-std::string TimeWalk::readKept(vtkPolyData* mesh)
-{
-  vtkUnsignedCharArray* pointGhosts = mesh->GetPointGhostArray();
-  vtkUnsignedCharArray* cellGhosts = mesh->GetCellGhostArray();
-  const vtkIdType before = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
-  if (before == 0 && !pointGhosts && !cellGhosts)
-  {
-    return {};
-  }
-  this->keep_.assign(mesh->GetNumberOfPoints(), 0);
-  if (pointGhosts)
-  {
-    std::copy_n(pointGhosts->GetPointer(0), this->keep_.size(), this->keep_.begin());
-  }
-  for (vtkCellArray* cells : { mesh->GetVerts(), mesh->GetLines() })
-  {
-    if (!flagPoints(cells, this->keep_))
-    {
-      return "A vertex cell or a line of the input refers to a point outside the " +
-        counted(mesh->GetNumberOfPoints(), "point") + ". Repair the cells of the input.";
-    }
-  }
-  for (std::size_t i = 0; cellGhosts && i < this->corners_.size(); ++i)
-  {
-    if (this->corners_[i] != kNone)
-    {
-      this->keep_[this->corners_[i]] |=
-        cellGhosts->GetPointer(0)[before + static_cast<vtkIdType>(i / kTriQuadCorners)];
-    }
-  }
-  this->view_.keep = this->keep_.data();
   return {};
 }
 

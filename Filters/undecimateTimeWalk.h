@@ -93,7 +93,6 @@ public:
 
 private:
   std::string readMesh(vtkPolyData* mesh);
-  std::string readKept(vtkPolyData* mesh);
   std::string readParts(vtkPolyData* mesh);
   std::string set(vtkPolyData* mesh, int lane);
   std::string setPositions(vtkPolyData* mesh, int lane, TimeRows& rows);

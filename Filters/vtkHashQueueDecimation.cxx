@@ -130,8 +130,9 @@ void fillPoints(const Record& record, vtkPolyData* mesh, vtkPolyData* coarse)
 void fillCells(const HashQueueDecimationResult& result, vtkPolyData* mesh, vtkPolyData* coarse)
 {
   const Record& record = result.record;
-  coarse->SetPolys(makeTriangles(
-    result.baseTriangles.data(), record.baseCellCount, mesh->GetPolys()->IsStorage64Bit()));
+  vtkIdType quads = 0;
+  coarse->SetPolys(makeFaces(result.baseTriangles.data(), record.cornersPerCell,
+    record.baseCellCount, mesh->GetPolys()->IsStorage64Bit(), nullptr, quads));
   const vtkIdType leading = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
   if (leading > 0)
   {

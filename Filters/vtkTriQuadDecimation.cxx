@@ -4,7 +4,6 @@
 #include "vtkTriQuadDecimation.h"
 
 #include "undecimateArrays.h"
-#include "undecimateFaces.h"
 #include "undecimatePass.h"
 #include "undecimateRecordFields.h"
 #include "undecimateTimeWalk.h"
@@ -552,8 +551,8 @@ int vtkTriQuadDecimation::RequestData(
         decimated->places[record.nodeOrder[i]] = i;
       }
       vtkIdType quads = 0;
-      decimated->polys = makeFaces(result.baseCells.data(), record.baseCellCount,
-        mesh->GetPolys()->IsStorage64Bit(), nullptr, quads);
+      decimated->polys = makeFaces(result.baseCells.data(), record.cornersPerCell,
+        record.baseCellCount, mesh->GetPolys()->IsStorage64Bit(), nullptr, quads);
       if (!composite)
       {
         this->NumberOfInputNodes = 0;
