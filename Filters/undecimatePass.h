@@ -17,6 +17,7 @@
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <utility>
 
@@ -77,6 +78,9 @@ public:
     return this->aborted_;
   }
 
+  /// Whether the mesh at hand is a block of a composite.
+  bool inBlocks() const { return this->inBlocks_; }
+
   vtkAlgorithm* algorithm() const { return this->algorithm_; }
 
 private:
@@ -84,6 +88,20 @@ private:
   bool inBlocks_ = false;
   bool aborted_ = false;
 };
+
+/// Whether an output is asked for in several pieces. Whichever one it is: all must fit the
+/// neighbouring pieces.
+inline bool isInPieces(vtkInformationVector* outputs)
+{
+  bool pieces = false;
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    pieces = pieces ||
+      outputs->GetInformationObject(port)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  }
+  return pieces;
+}
 
 /// Passes progress from the core to an algorithm, and its abort to the core, for one part of the
 /// work after the other.

@@ -527,6 +527,8 @@ bool isRecordArray(const char* name)
 
 void passFieldData(vtkFieldData* from, vtkFieldData* to)
 {
+  // The executive has put the input's field data there, with the record of an earlier decimation.
+  to->Initialize();
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)
   {
     if (!isRecordArray(from->GetAbstractArray(i)->GetName()))
@@ -534,6 +536,17 @@ void passFieldData(vtkFieldData* from, vtkFieldData* to)
       to->AddArray(from->GetAbstractArray(i));
     }
   }
+}
+
+bool passEmpty(vtkPolyData* from, vtkPolyData* to)
+{
+  if (from->GetNumberOfPoints() > 0 || from->GetNumberOfCells() > 0)
+  {
+    return false;
+  }
+  to->ShallowCopy(from);
+  passFieldData(from->GetFieldData(), to->GetFieldData());
+  return true;
 }
 
 std::int64_t recordChecksum(
@@ -666,8 +679,9 @@ std::string readRecord(
   {
     readValues(mesh, reader, record);
   }
-  record.baseCells =
-    readFaces(mesh->GetPolys(), mesh->GetNumberOfPoints(), record.view.cornersPerCell).corners;
+  // Other numbers are refused when the record is opened.
+  const int cornersPerCell = record.view.cornersPerCell == 3 ? 3 : 4;
+  record.baseCells = readFaces(mesh->GetPolys(), mesh->GetNumberOfPoints(), cornersPerCell).corners;
   for (std::size_t i = before; i < record.kept.size(); ++i)
   {
     record.keptTimes.push_back(record.kept[i]->GetMTime());

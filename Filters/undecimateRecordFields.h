@@ -87,8 +87,11 @@ constexpr const char* kOriginalPointIds = "vtkOriginalPointIds";
 /// Whether a field data array belongs to a record.
 bool isRecordArray(const char* name);
 
-/// Add all arrays of `from` to `to` but those of a record.
+/// Give `to` all arrays of `from` but those of a record, and no others.
 void passFieldData(vtkFieldData* from, vtkFieldData* to);
+
+/// Pass on a mesh without points and cells, without a record. False if it is not empty.
+bool passEmpty(vtkPolyData* from, vtkPolyData* to);
 
 /// Fingerprints of arrays that do not change, by the array and its time: hashing a record anew for
 /// each time step would take as long as handing out the mesh. The arrays must outlive their use.

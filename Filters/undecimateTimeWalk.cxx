@@ -18,6 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <new>
 #include <numeric>
 
 namespace undecimate
@@ -207,14 +208,8 @@ std::string TimeWalk::readMesh(vtkPolyData* mesh)
   {
     return problem;
   }
-  const auto nodes = static_cast<Index>(points);
-  const int lanes = static_cast<int>(this->laneSteps_.size());
-  this->positions_ = std::make_unique<TimeRows>(nodes, 3, lanes);
-  if (this->options_.choice == StepChoice::Three && this->steps_.size() > 2)
-  {
-    this->candidate_ = std::make_unique<TimeRows>(nodes, 3, 1);
-  }
   dropAssociation(mesh, this->options_.scalars);
+  std::vector<int> components; // of the arrays
   for (const std::string& name : this->options_.scalars)
   {
     vtkDataArray* array = nullptr;
@@ -222,9 +217,28 @@ std::string TimeWalk::readMesh(vtkPolyData* mesh)
     {
       return problem;
     }
-    this->arrays_.emplace_back(nodes, array->GetNumberOfComponents(), lanes);
-    this->origins_.emplace_back();
+    components.push_back(array->GetNumberOfComponents());
   }
+  const auto nodes = static_cast<Index>(points);
+  const int lanes = static_cast<int>(this->laneSteps_.size());
+  try
+  {
+    this->positions_ = std::make_unique<TimeRows>(nodes, 3, lanes);
+    if (this->options_.choice == StepChoice::Three && this->steps_.size() > 2)
+    {
+      this->candidate_ = std::make_unique<TimeRows>(nodes, 3, 1);
+    }
+    for (const int count : components)
+    {
+      this->arrays_.emplace_back(nodes, count, lanes);
+    }
+  }
+  catch (const std::bad_alloc&)
+  {
+    return "Not enough memory for the positions and arrays of " + counted(points, "point") +
+      " at " + counted(lanes, "time step") + ". Choose fewer steps.";
+  }
+  this->origins_.resize(components.size());
   return {};
 }
 

@@ -23,19 +23,15 @@
  * Where three or more surfaces meet (T joints), and between parts, nodes go only along the joint or
  * border, in all surfaces at once, so that nothing comes apart.
  *
- * Output arrays: all point arrays of the input at the points that are left and all cell arrays,
- * each cell with the values of the input cell in whose place it is; of the same types, and of the
- * time step that is asked for. On request the point array `vtkOriginalPointIds` (vtkIdTypeArray, 1
- * component): the number of each point in the input; an array of the input of that name gives way
- * to it. Field data is passed on, but for the record of an earlier decimation. Added (port 0) are
- * the field data arrays of the record, whose names all start with "Undecimation.". The points are
- * in the order of the input.
+ * Output arrays: all point and cell arrays of the input, of the same types, with the values of the
+ * time step that is asked for; on request the point array `vtkOriginalPointIds`; at port 0 the
+ * field data arrays of the record, whose names start with "Undecimation.".
+ * vtkProgressiveMeshDecimation says more.
  *
- * Other cells and unusual input: vertex cells and lines are passed along and their nodes are kept.
- * Polygons of five points and more, faces of fewer than three, and triangle strips are an error.
- * Degenerate and repeated cells, unused points and cells with a coordinate that is not a number at
- * any of the time steps stay with their nodes. Nodes of ghost cells and ghost points are kept.
- * Empty input gives empty output.
+ * Unusual input: polygons of five points and more, faces of fewer than three, and triangle strips
+ * are an error. Degenerate and repeated cells, unused points and cells with a coordinate that is
+ * not a number at any of the time steps stay with their nodes. Vertex cells and lines are passed
+ * along, and their nodes are kept.
  *
  * @section Execution Model
  * If the input has time steps, the first execution asks for those that the choice of steps needs,
@@ -43,9 +39,8 @@
  * in Scalars): of all steps, or of three. Later executions, for other times, only ask for that time
  * and hand out its places and values; the decimation runs again when the filter or something
  * upstream is modified. An input whose points or cells are not the same at all times is an error
- * that tells the first difference. An aborted execution gives empty output. A composite input is
- * decimated block by block if it has no more than one time step. When the input comes in several
- * pieces, the boundary nodes of each are kept.
+ * that tells the first difference. A composite input is decimated block by block if it has no more
+ * than one time step.
  *
  * @warning
  * A filter that changes the output's points, cells or arrays makes the record useless:
@@ -59,49 +54,18 @@
 #ifndef vtkTriQuadDecimation_h
 #define vtkTriQuadDecimation_h
 
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkProgressiveMeshDecimation.h"
 #include "vtkUndecimateFiltersModule.h" // for the export macro
 
 #include <memory> // for std::unique_ptr
+#include <vector> // for lists of times
 
-class VTKUNDECIMATEFILTERS_EXPORT vtkTriQuadDecimation : public vtkPolyDataAlgorithm
+class VTKUNDECIMATEFILTERS_EXPORT vtkTriQuadDecimation : public vtkProgressiveMeshDecimation
 {
 public:
   static vtkTriQuadDecimation* New();
-  vtkTypeMacro(vtkTriQuadDecimation, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkTriQuadDecimation, vtkProgressiveMeshDecimation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  enum OutputPort
-  {
-    PROGRESSIVE_MESH = 0, ///< with the record in its field data
-    COARSE_MESH = 1       ///< without
-  };
-
-  ///@{
-  /**
-   * Fraction of the input's nodes to remove, in [0, 1]. 1 removes as many nodes as the mesh allows.
-   * Of this and the other limits the one that is reached first counts. Default is 0.9.
-   */
-  vtkSetClampMacro(TargetReduction, double, 0.0, 1.0);
-  vtkGetMacro(TargetReduction, double);
-  ///@}
-
-  ///@{
-  /**
-   * Stop when this many nodes are left; 0 is no limit. Default is 0.
-   */
-  vtkSetClampMacro(TargetNodes, vtkIdType, 0, VTK_ID_MAX);
-  vtkGetMacro(TargetNodes, vtkIdType);
-  ///@}
-
-  ///@{
-  /**
-   * No removal with a larger error is made. A fraction of the diagonal of the bounding box at the
-   * first time step that counts; 1 or more is no limit. At least 0. Default is 1.
-   */
-  vtkSetClampMacro(MaximumError, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(MaximumError, double);
-  ///@}
 
   enum CriterionType
   {
@@ -193,43 +157,11 @@ public:
 
   ///@{
   /**
-   * Names of the point arrays that steer the decimation with DEVIATION, of numbers with 1 to 9
-   * components (vectors are compared by the length of their difference). A name is added once. A
-   * first name POINTS is passed over unless there is such an array. Default is none.
-   */
-  void AddScalars(const char* name);
-  void ClearScalars();
-  int GetNumberOfScalars();
-  const char* GetScalars(int index);
-  ///@}
-
-  ///@{
-  /**
-   * With DEVIATION an error of an array in Scalars, as a fraction of the array's range over all
-   * steps that count, counts as the deviation of this weight times the fraction. 0 is geometry
-   * only; at least 0. Default is 0.1.
-   */
-  vtkSetClampMacro(ScalarWeight, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(ScalarWeight, double);
-  ///@}
-
-  ///@{
-  /**
    * What a quad that becomes a triangle counts, as a fraction of the diagonal: with a larger weight
    * quads stay longer. At least 0. Default is 0.
    */
   vtkSetClampMacro(QuadWeight, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(QuadWeight, double);
-  ///@}
-
-  ///@{
-  /**
-   * Keep all nodes of boundary edges. Default is off: they go along the boundary, and their removal
-   * costs the distance to the new boundary.
-   */
-  vtkSetMacro(PreserveBoundary, vtkTypeBool);
-  vtkGetMacro(PreserveBoundary, vtkTypeBool);
-  vtkBooleanMacro(PreserveBoundary, vtkTypeBool);
   ///@}
 
   ///@{
@@ -244,34 +176,13 @@ public:
 
   ///@{
   /**
-   * Add the point array `vtkOriginalPointIds` to the output. Default is off.
+   * More results of the last decimation: cells of the input, quads of the output, and the numbers
+   * of the time steps that counted ("0, 15, 30"; empty without time).
    */
-  vtkSetMacro(OriginalPointIds, vtkTypeBool);
-  vtkGetMacro(OriginalPointIds, vtkTypeBool);
-  vtkBooleanMacro(OriginalPointIds, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Results of the last decimation: nodes and cells of the input, nodes, triangles and quads of the
-   * output, its error as a fraction of the diagonal, what stopped the decimation ("target
-   * reduction", ...), and the numbers of the time steps that counted ("0, 15, 30"; empty without
-   * time). Of this process only when there are several; sums over the blocks of a composite.
-   */
-  vtkGetMacro(NumberOfInputNodes, vtkIdType);
   vtkGetMacro(NumberOfInputCells, vtkIdType);
-  vtkGetMacro(NumberOfNodes, vtkIdType);
-  vtkGetMacro(NumberOfTriangles, vtkIdType);
   vtkGetMacro(NumberOfQuads, vtkIdType);
-  vtkGetMacro(Error, double);
-  const char* GetStopReason();
   const char* GetUsedSteps();
   ///@}
-
-  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector, int requestFromOutputPort, vtkMTimeType* mtime) override;
-  int ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
 
 protected:
   vtkTriQuadDecimation();
@@ -281,31 +192,32 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  bool MakeOutputs(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  void StartPass() override;
+  void ClearResults() override;
 
-  double TargetReduction = 0.9;
-  vtkIdType TargetNodes = 0;
-  double MaximumError = 1.0;
-  int Criterion = DEVIATION;
-  int TimeError = MAXIMUM;
+  // The constructor gives these the defaults of the core's options.
+  int Criterion;
+  int TimeError;
+  double QuadWeight;
   int StepChoice = ALL;
   double StepFactor = 1.1;
   char* Displacement = nullptr;
-  double ScalarWeight = 0.1;
-  double QuadWeight = 0.0;
-  vtkTypeBool PreserveBoundary = 0;
   char* PartArray = nullptr;
-  vtkTypeBool OriginalPointIds = 0;
 
-  vtkIdType NumberOfInputNodes = 0;
   vtkIdType NumberOfInputCells = 0;
-  vtkIdType NumberOfNodes = 0;
-  vtkIdType NumberOfTriangles = 0;
   vtkIdType NumberOfQuads = 0;
-  double Error = 0.0;
 
 private:
   vtkTriQuadDecimation(const vtkTriQuadDecimation&) = delete;
   void operator=(const vtkTriQuadDecimation&) = delete;
+
+  bool AddStep(
+    vtkPolyData* mesh, const std::vector<double>& times, vtkInformationVector* outputVector);
+  bool Decimate(vtkPolyData* mesh, bool pieces, bool withTime);
+  void HandOut(
+    vtkPolyData* mesh, const std::vector<double>& times, vtkInformationVector* outputVector);
 
   struct Internals;
   std::unique_ptr<Internals> Private;

@@ -73,11 +73,8 @@ int vtkUndecimation::RequestData(
   std::string problem;
   try
   {
-    if (input->GetNumberOfPoints() == 0 && input->GetNumberOfCells() == 0)
+    if (passEmpty(input, output))
     {
-      output->ShallowCopy(input);
-      output->GetFieldData()->Initialize();
-      passFieldData(input->GetFieldData(), output->GetFieldData());
       return 1;
     }
     PassMonitor monitor(pass);
@@ -90,7 +87,6 @@ int vtkUndecimation::RequestData(
                                                     : cursor.stepsForError(this->MaximumError);
       if (mesh->show(input, steps, output, this->Private->memory, monitor))
       {
-        output->GetFieldData()->Initialize();
         passFieldData(input->GetFieldData(), output->GetFieldData());
         if (this->OriginalPointIds)
         {

@@ -8,6 +8,8 @@
 #include "vtkTriQuadDecimation.h"
 #include "vtkUndecimation.h"
 
+#include "tri_quad_decimation.h"
+
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -19,6 +21,8 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkMultiBlockDataSetAlgorithm.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -100,7 +104,21 @@ vtkSmartPointer<vtkPolyData> plateAt(int step)
   return mesh;
 }
 
-/// Time steps 0, 0.5, 1, ... of a mesh; remembers which were asked for.
+/// Time steps 0, 0.5, 1, ...
+void setTimes(vtkInformationVector* outputs, int steps)
+{
+  std::vector<double> times;
+  for (int i = 0; i < steps; ++i)
+  {
+    times.push_back(0.5 * i);
+  }
+  vtkInformation* info = outputs->GetInformationObject(0);
+  const double range[] = { times.front(), times.back() };
+  info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), times.data(), steps);
+  info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
+}
+
+/// These steps of a mesh; remembers which were asked for.
 class Series : public vtkPolyDataAlgorithm
 {
 public:
@@ -117,15 +135,7 @@ protected:
   int RequestInformation(
     vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
   {
-    std::vector<double> times;
-    for (int i = 0; i < this->steps; ++i)
-    {
-      times.push_back(0.5 * i);
-    }
-    vtkInformation* info = outputs->GetInformationObject(0);
-    const double range[] = { times.front(), times.back() };
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), times.data(), this->steps);
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
+    setTimes(outputs, this->steps);
     return 1;
   }
 
@@ -143,6 +153,32 @@ protected:
 };
 
 vtkStandardNewMacro(Series);
+
+/// A block at each of these time steps.
+class BlockSeries : public vtkMultiBlockDataSetAlgorithm
+{
+public:
+  static BlockSeries* New();
+  vtkTypeMacro(BlockSeries, vtkMultiBlockDataSetAlgorithm);
+
+protected:
+  BlockSeries() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    setTimes(outputs, kSteps);
+    return 1;
+  }
+
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkMultiBlockDataSet::GetData(outputs)->SetBlock(0, plateAt(0));
+    return 1;
+  }
+};
+
+vtkStandardNewMacro(BlockSeries);
 
 struct Pipe
 {
@@ -221,6 +257,18 @@ TEST(TriQuadDecimation, TheTopologyOfALevelIsTheSameAtAllSteps)
       EXPECT_EQ(now->GetNumberOfPoints(), first->GetNumberOfPoints());
     }
   }
+}
+
+TEST(TriQuadDecimation, GivesTheFirstStepUnlessAskedForAnother)
+{
+  Pipe pipe;
+  pipe.undecimation->SetLevel(1.0);
+  pipe.undecimation->Update();
+  EXPECT_EQ(differences(pipe.undecimation->GetOutput(), plateAt(0)), "");
+  pipe.decimation->SetStepChoiceToList();
+  pipe.decimation->AddSteps(4);
+  pipe.undecimation->Update();
+  EXPECT_EQ(differences(pipe.undecimation->GetOutput(), plateAt(0)), "");
 }
 
 // Nodal values and cell data are those of the original at each step and level.
@@ -348,6 +396,80 @@ TEST(TriQuadDecimation, WorksWithoutTime)
     EXPECT_EQ(decimation->GetOutput(1)->GetFieldData()->GetNumberOfArrays(),
       mesh->GetFieldData()->GetNumberOfArrays());
   }
+}
+
+TEST(TriQuadDecimation, DecimatesEachBlock)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, plateAt(2));
+  blocks->SetBlock(2, plateAt(5));
+  vtkNew<vtkTriQuadDecimation> decimation;
+  decimation->SetInputDataObject(blocks);
+  vtkNew<vtkUndecimation> undecimation;
+  undecimation->SetInputConnection(decimation->GetOutputPort());
+  undecimation->SetLevel(1.0);
+  undecimation->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(undecimation->GetOutputDataObject(0));
+  ASSERT_NE(output, nullptr);
+  EXPECT_EQ(differences(vtkPolyData::SafeDownCast(output->GetBlock(0)), plateAt(2)), "");
+  EXPECT_EQ(output->GetBlock(1), nullptr);
+  EXPECT_EQ(differences(vtkPolyData::SafeDownCast(output->GetBlock(2)), plateAt(5)), "");
+  // Sums over the blocks, and the same again.
+  for (int i = 0; i < 2; ++i)
+  {
+    EXPECT_EQ(decimation->GetNumberOfInputNodes(), 2 * kRows * kRows);
+    EXPECT_EQ(decimation->GetNumberOfInputCells(), 2 * plateAt(0)->GetNumberOfPolys());
+    EXPECT_EQ(undecimation->GetNumberOfNodes(), 2 * kRows * kRows);
+    EXPECT_LT(decimation->GetNumberOfNodes(), 2 * kRows * kRows / 5);
+    EXPECT_STREQ(decimation->GetStopReason(), "target reduction");
+    decimation->Modified();
+    undecimation->Update();
+  }
+}
+
+TEST(TriQuadDecimation, RefusesBlocksWithTimeSteps)
+{
+  vtkNew<BlockSeries> series;
+  vtkNew<vtkTriQuadDecimation> decimation;
+  decimation->SetInputConnection(series->GetOutputPort());
+  vtkNew<filter_testing::Messages> messages;
+  messages->watch(decimation);
+  decimation->UpdateTimeStep(0.5);
+  EXPECT_NE(
+    messages->all().find("several blocks and 6 time steps. Apply Merge Blocks"), std::string::npos)
+    << messages->all();
+}
+
+// At each time step the input has what is to be told, and it is told once.
+TEST(TriQuadDecimation, WarnsOnce)
+{
+  Pipe pipe;
+  pipe.series->make = [](int step)
+  {
+    auto mesh = plateAt(step);
+    vtkNew<vtkCellArray> verts;
+    verts->InsertNextCell({ 3 });
+    mesh->SetVerts(verts);
+    mesh->GetCellData()->Initialize();
+    vtkNew<vtkIdTypeArray> ids;
+    ids->SetName("vtkOriginalPointIds");
+    ids->SetNumberOfValues(mesh->GetNumberOfPoints());
+    mesh->GetPointData()->AddArray(ids);
+    return mesh;
+  };
+  pipe.decimation->OriginalPointIdsOn();
+  vtkNew<filter_testing::Messages> messages;
+  messages->watch(pipe.decimation);
+  pipe.at(0.0, 0.5);
+  pipe.at(1.0, 0.5);
+  pipe.at(2.5, 0.7);
+  EXPECT_EQ(messages->errors.size(), 0U) << messages->all();
+  EXPECT_EQ(messages->warnings.size(), 2U) << messages->all();
+  EXPECT_TRUE(filter_testing::has(messages->warnings, "gives way"));
+  EXPECT_TRUE(filter_testing::has(messages->warnings, "1 vertex cells and 0 lines"));
+  pipe.series->Modified();
+  pipe.at(2.5, 0.7);
+  EXPECT_EQ(messages->warnings.size(), 4U) << messages->all();
 }
 
 TEST(TriQuadDecimation, SurvivesFiles)
@@ -491,6 +613,21 @@ TEST(TriQuadDecimation, ScalarsAndPartsSteer)
   scalars.decimation->SetScalarWeight(1.0);
   scalars.at(0.0, 0.0);
   EXPECT_GT(scalars.decimation->GetNumberOfNodes(), plain.decimation->GetNumberOfNodes());
+}
+
+TEST(TriQuadDecimation, TheDefaultsAreThoseOfTheCore)
+{
+  const undecimate::TriQuadDecimationOptions options;
+  vtkNew<vtkTriQuadDecimation> filter;
+  EXPECT_EQ(filter->GetTargetReduction(), options.targetReduction);
+  EXPECT_EQ(filter->GetTargetNodes(), options.targetNodes);
+  EXPECT_EQ(filter->GetCriterion(), static_cast<int>(options.criterion));
+  EXPECT_EQ(filter->GetTimeError(), static_cast<int>(options.timeError));
+  EXPECT_EQ(filter->GetQuadWeight(), options.quadWeight);
+  EXPECT_EQ(filter->GetScalarWeight(), options.scalarWeight);
+  EXPECT_EQ(filter->GetPreserveBoundary() != 0, options.preserveBoundary);
+  EXPECT_EQ(filter->GetMaximumError(), 1.0) << "which stands for no limit";
+  EXPECT_GT(options.maximumError, 1.0);
 }
 
 TEST(TriQuadDecimation, CanBeStopped)
