@@ -13,6 +13,13 @@
 #include <intrin.h>
 #endif
 
+/// A function whose code is to stand in its caller's, whatever that is compiled for.
+#if defined(__GNUC__) || defined(__clang__)
+#define UNDECIMATE_INLINE inline __attribute__((always_inline))
+#else
+#define UNDECIMATE_INLINE inline
+#endif
+
 namespace undecimate
 {
 

@@ -3,6 +3,9 @@
 
 #include "time_lanes.h"
 
+#include "compiler.h"
+#include "vector.h"
+
 #include <cmath>
 #include <limits>
 
@@ -12,13 +15,6 @@
 #define UNDECIMATE_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define UNDECIMATE_VECTOR_CLONES
-#endif
-
-// Into the clones of the caller.
-#if defined(__GNUC__)
-#define UNDECIMATE_INLINE inline __attribute__((always_inline))
-#else
-#define UNDECIMATE_INLINE inline
 #endif
 
 namespace undecimate
@@ -38,33 +34,8 @@ UNDECIMATE_INLINE float smaller(float a, float b)
   return a < b ? a : b;
 }
 
-struct V
-{
-  float x;
-  float y;
-  float z;
-};
+using V = VectorOf<float>;
 
-UNDECIMATE_INLINE V operator-(const V& a, const V& b)
-{
-  return { a.x - b.x, a.y - b.y, a.z - b.z };
-}
-UNDECIMATE_INLINE V operator+(const V& a, const V& b)
-{
-  return { a.x + b.x, a.y + b.y, a.z + b.z };
-}
-UNDECIMATE_INLINE V operator*(float s, const V& a)
-{
-  return { s * a.x, s * a.y, s * a.z };
-}
-UNDECIMATE_INLINE float dot(const V& a, const V& b)
-{
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-UNDECIMATE_INLINE V cross(const V& a, const V& b)
-{
-  return { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
-}
 UNDECIMATE_INLINE V at(const float* rows, int lanes, int i)
 {
   return { rows[i], rows[lanes + i], rows[2 * lanes + i] };

@@ -7,43 +7,49 @@
 #ifndef UNDECIMATE_CORE_VECTOR_H
 #define UNDECIMATE_CORE_VECTOR_H
 
+#include "compiler.h"
+
 #include <cmath>
 
 namespace undecimate
 {
 
-struct Vector
+/// Always inlined, so that a caller that is compiled for wider vector instructions takes it along.
+template <class Number>
+struct VectorOf
 {
   // Not initialized: arrays of them are filled by their owners, and often only in part.
-  double x;
-  double y;
-  double z;
+  Number x;
+  Number y;
+  Number z;
+
+  friend UNDECIMATE_INLINE VectorOf operator-(const VectorOf& a, const VectorOf& b)
+  {
+    return { a.x - b.x, a.y - b.y, a.z - b.z };
+  }
+  friend UNDECIMATE_INLINE VectorOf operator+(const VectorOf& a, const VectorOf& b)
+  {
+    return { a.x + b.x, a.y + b.y, a.z + b.z };
+  }
+  friend UNDECIMATE_INLINE VectorOf operator*(Number s, const VectorOf& a)
+  {
+    return { s * a.x, s * a.y, s * a.z };
+  }
+  friend UNDECIMATE_INLINE Number dot(const VectorOf& a, const VectorOf& b)
+  {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  friend UNDECIMATE_INLINE VectorOf cross(const VectorOf& a, const VectorOf& b)
+  {
+    return { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
+  }
+  friend UNDECIMATE_INLINE bool isFinite(const VectorOf& a)
+  {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+  }
 };
 
-inline Vector operator-(const Vector& a, const Vector& b)
-{
-  return { a.x - b.x, a.y - b.y, a.z - b.z };
-}
-inline Vector operator+(const Vector& a, const Vector& b)
-{
-  return { a.x + b.x, a.y + b.y, a.z + b.z };
-}
-inline Vector operator*(double s, const Vector& a)
-{
-  return { s * a.x, s * a.y, s * a.z };
-}
-inline double dot(const Vector& a, const Vector& b)
-{
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vector cross(const Vector& a, const Vector& b)
-{
-  return { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
-}
-inline bool isFinite(const Vector& a)
-{
-  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
-}
+using Vector = VectorOf<double>;
 
 } // namespace undecimate
 
