@@ -427,21 +427,31 @@ void addBoundaryQuadrics(
   }
 }
 
+namespace
+{
+
+// The value of a quadric at a place, not below 0, and its matrix times the place.
+UNDECIMATE_INLINE float quadricValue(const float* q, int n, int i, const V& p, V& product)
+{
+  product = { q[i] * p.x + q[n + i] * p.y + q[2 * n + i] * p.z,
+    q[n + i] * p.x + q[3 * n + i] * p.y + q[4 * n + i] * p.z,
+    q[2 * n + i] * p.x + q[4 * n + i] * p.y + q[5 * n + i] * p.z };
+  const float value = (product.x + 2.0F * q[6 * n + i]) * p.x +
+    (product.y + 2.0F * q[7 * n + i]) * p.y + (product.z + 2.0F * q[8 * n + i]) * p.z +
+    q[9 * n + i];
+  return larger(value, 0.0F);
+}
+
+} // namespace
+
 UNDECIMATE_VECTOR_CLONES
 void quadricValues(int lanes, const float* __restrict__ quadric, const float* __restrict__ d,
   float* __restrict__ squares)
 {
-  const float* const q = quadric;
-  const int n = lanes;
   for (int i = 0; i < lanes; ++i)
   {
-    const V p = at(d, lanes, i);
-    const float ax = q[i] * p.x + q[n + i] * p.y + q[2 * n + i] * p.z;
-    const float ay = q[n + i] * p.x + q[3 * n + i] * p.y + q[4 * n + i] * p.z;
-    const float az = q[2 * n + i] * p.x + q[4 * n + i] * p.y + q[5 * n + i] * p.z;
-    const float value = (ax + 2.0F * q[6 * n + i]) * p.x + (ay + 2.0F * q[7 * n + i]) * p.y +
-      (az + 2.0F * q[8 * n + i]) * p.z + q[9 * n + i];
-    squares[i] = larger(value, 0.0F);
+    V product;
+    squares[i] = quadricValue(quadric, lanes, i, at(d, lanes, i), product);
   }
 }
 
@@ -453,20 +463,16 @@ void mergeQuadric(
   const int n = lanes;
   for (int i = 0; i < lanes; ++i)
   {
-    const V p = at(d, lanes, i);
-    const float ax = q[i] * p.x + q[n + i] * p.y + q[2 * n + i] * p.z;
-    const float ay = q[n + i] * p.x + q[3 * n + i] * p.y + q[4 * n + i] * p.z;
-    const float az = q[2 * n + i] * p.x + q[4 * n + i] * p.y + q[5 * n + i] * p.z;
-    const float value = (ax + 2.0F * q[6 * n + i]) * p.x + (ay + 2.0F * q[7 * n + i]) * p.y +
-      (az + 2.0F * q[8 * n + i]) * p.z + q[9 * n + i];
+    V product;
+    const float value = quadricValue(q, n, i, at(d, lanes, i), product);
     for (int row = 0; row < 6; ++row)
     {
       to[row * n + i] += q[row * n + i];
     }
-    to[6 * n + i] += q[6 * n + i] + ax;
-    to[7 * n + i] += q[7 * n + i] + ay;
-    to[8 * n + i] += q[8 * n + i] + az;
-    to[9 * n + i] += larger(value, 0.0F);
+    to[6 * n + i] += q[6 * n + i] + product.x;
+    to[7 * n + i] += q[7 * n + i] + product.y;
+    to[8 * n + i] += q[8 * n + i] + product.z;
+    to[9 * n + i] += value;
     to[10 * n + i] += q[10 * n + i];
   }
 }
