@@ -6,6 +6,7 @@
 #include "array_range.h"
 #include "cell_sources.h"
 #include "deviation.h"
+#include "guarded.h"
 #include "mean_edge_criterion.h"
 #include "triangle_topology.h"
 
@@ -13,8 +14,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <new>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -543,39 +542,17 @@ const char* toString(StopReason reason)
 Outcome decimate(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
   Monitor& monitor, HashQueueDecimationResult& result)
 {
-  result = HashQueueDecimationResult();
-  Outcome outcome = checkOptions(options);
-  if (outcome)
-  {
-    outcome = checkMesh(mesh);
-  }
-  if (!outcome)
-  {
-    return outcome;
-  }
-  try
-  {
-    outcome = run(mesh, options, monitor, result);
-  }
-  catch (const std::bad_alloc&)
-  {
-    outcome = { Status::OutOfMemory,
-      "Not enough memory to decimate " + std::to_string(mesh.nodeCount) + " nodes." };
-  }
-  catch (const std::length_error&)
-  {
-    outcome = { Status::TooLarge, "The record of the decimation would be too large." };
-  }
-  catch (const std::exception& failure)
-  {
-    // Only a callback of the monitor can come to this.
-    outcome = { Status::Cancelled, std::string("Cancelled: ") + failure.what() };
-  }
-  if (!outcome)
-  {
-    result = HashQueueDecimationResult();
-  }
-  return outcome;
+  return guarded("Not enough memory to decimate " + std::to_string(mesh.nodeCount) + " nodes.",
+    result,
+    [&]
+    {
+      Outcome outcome = checkOptions(options);
+      if (outcome)
+      {
+        outcome = checkMesh(mesh);
+      }
+      return outcome ? run(mesh, options, monitor, result) : outcome;
+    });
 }
 
 } // namespace undecimate

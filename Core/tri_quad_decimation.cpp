@@ -3,13 +3,12 @@
 
 #include "tri_quad_decimation.h"
 
+#include "guarded.h"
 #include "tri_quad_cost.h"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <new>
-#include <stdexcept>
+#include <string>
 
 namespace undecimate
 {
@@ -357,6 +356,13 @@ std::vector<unsigned char> findKeptNodes(const TriQuadMeshView& mesh,
   return kept;
 }
 
+Outcome checkInput(
+  const TriQuadMeshView& mesh, const TimeRows& positions, const TriQuadDecimationOptions& options)
+{
+  const Outcome outcome = checkOptions(options, positions);
+  return outcome ? checkMesh(mesh, positions) : outcome;
+}
+
 Outcome run(const TriQuadMeshView& mesh, const TimeRows& positions,
   const TriQuadDecimationOptions& options, Monitor& monitor, TriQuadDecimationResult& result)
 {
@@ -374,40 +380,14 @@ Outcome run(const TriQuadMeshView& mesh, const TimeRows& positions,
 Outcome decimateTriQuad(const TriQuadMeshView& mesh, const TimeRows& positions,
   const TriQuadDecimationOptions& options, Monitor& monitor, TriQuadDecimationResult& result)
 {
-  result = TriQuadDecimationResult();
-  Outcome outcome = checkOptions(options, positions);
-  if (outcome)
-  {
-    outcome = checkMesh(mesh, positions);
-  }
-  if (!outcome)
-  {
-    return outcome;
-  }
-  try
-  {
-    outcome = run(mesh, positions, options, monitor, result);
-  }
-  catch (const std::bad_alloc&)
-  {
-    outcome = { Status::OutOfMemory,
-      "Not enough memory to decimate " + std::to_string(mesh.nodeCount) + " nodes at " +
-        std::to_string(positions.steps()) + " time steps. Choose fewer steps." };
-  }
-  catch (const std::length_error&)
-  {
-    outcome = { Status::TooLarge, "The record of the decimation would be too large." };
-  }
-  catch (const std::exception& failure)
-  {
-    // Only a callback of the monitor can come to this.
-    outcome = { Status::Cancelled, std::string("Cancelled: ") + failure.what() };
-  }
-  if (!outcome)
-  {
-    result = TriQuadDecimationResult();
-  }
-  return outcome;
+  return guarded("Not enough memory to decimate " + std::to_string(mesh.nodeCount) + " nodes at " +
+      std::to_string(positions.steps()) + " time steps. Choose fewer steps.",
+    result,
+    [&]
+    {
+      const Outcome outcome = checkInput(mesh, positions, options);
+      return outcome ? run(mesh, positions, options, monitor, result) : outcome;
+    });
 }
 
 namespace
@@ -463,78 +443,74 @@ Outcome runWithSteps(const TriQuadMeshView& mesh, const TimeRows& positions,
   return decimateTriQuad(mesh, some, options, monitor, result);
 }
 
+Outcome runAutomatically(const TriQuadMeshView& mesh, const TimeRows& positions,
+  const TriQuadDecimationOptions& options, double factor, Monitor& monitor,
+  TriQuadDecimationResult& result, std::vector<int>& steps)
+{
+  if (!(factor >= 1.0))
+  {
+    return { Status::InvalidArgument,
+      "StepFactor is " + std::to_string(factor) + "; it must be 1 or more." };
+  }
+  Outcome outcome = checkInput(mesh, positions, options);
+  if (!outcome)
+  {
+    return outcome;
+  }
+  steps = firstSteps(positions);
+  TriQuadDecimationOptions measured = options;
+  measured.criterion = TriQuadCriterion::Deviation;
+  measured.allPositions = &positions;
+  // How many rounds there will be is not known: each gets half of what is left.
+  double done = 0.0;
+  for (bool enough = false; !enough;)
+  {
+    Monitor part = partOf(monitor, done, 0.5 * (1.0 + done));
+    done = 0.5 * (1.0 + done);
+    outcome = runWithSteps(mesh, positions, measured, steps, part, result);
+    if (!outcome)
+    {
+      break;
+    }
+    double chosen = 0.0;
+    for (const int step : steps)
+    {
+      chosen = std::max(chosen, result.allStepErrors[step]);
+    }
+    const auto& errors = result.allStepErrors;
+    const auto worst = std::max_element(errors.begin(), errors.end());
+    enough = *worst <= factor * chosen;
+    if (!enough)
+    {
+      const int step = static_cast<int>(worst - errors.begin());
+      steps.insert(std::upper_bound(steps.begin(), steps.end(), step), step);
+    }
+  }
+  if (outcome && options.criterion != TriQuadCriterion::Deviation)
+  {
+    Monitor part = partOf(monitor, done, 1.0);
+    outcome = runWithSteps(mesh, positions, options, steps, part, result);
+  }
+  if (outcome && !monitor.update(1.0))
+  {
+    outcome = { Status::Cancelled, "Cancelled." };
+  }
+  return outcome;
+}
+
 } // namespace
 
 Outcome decimateTriQuadAutomatically(const TriQuadMeshView& mesh, const TimeRows& positions,
   const TriQuadDecimationOptions& options, double factor, Monitor& monitor,
   TriQuadDecimationResult& result, std::vector<int>& steps)
 {
-  result = TriQuadDecimationResult();
   steps.clear();
-  if (!(factor >= 1.0))
-  {
-    return { Status::InvalidArgument,
-      "StepFactor is " + std::to_string(factor) + "; it must be 1 or more." };
-  }
-  Outcome outcome = checkOptions(options, positions);
-  if (outcome)
-  {
-    outcome = checkMesh(mesh, positions);
-  }
+  const Outcome outcome = guarded("Not enough memory to choose among " +
+      std::to_string(positions.steps()) + " time steps. Choose fewer steps.",
+    result,
+    [&] { return runAutomatically(mesh, positions, options, factor, monitor, result, steps); });
   if (!outcome)
   {
-    return outcome;
-  }
-  try
-  {
-    steps = firstSteps(positions);
-    TriQuadDecimationOptions measured = options;
-    measured.criterion = TriQuadCriterion::Deviation;
-    measured.allPositions = &positions;
-    // How many rounds there will be is not known: each gets half of what is left.
-    double done = 0.0;
-    for (bool enough = false; !enough;)
-    {
-      Monitor part = partOf(monitor, done, 0.5 * (1.0 + done));
-      done = 0.5 * (1.0 + done);
-      outcome = runWithSteps(mesh, positions, measured, steps, part, result);
-      if (!outcome)
-      {
-        break;
-      }
-      double chosen = 0.0;
-      for (const int step : steps)
-      {
-        chosen = std::max(chosen, result.allStepErrors[step]);
-      }
-      const auto& errors = result.allStepErrors;
-      const auto worst = std::max_element(errors.begin(), errors.end());
-      enough = *worst <= factor * chosen;
-      if (!enough)
-      {
-        const int step = static_cast<int>(worst - errors.begin());
-        steps.insert(std::upper_bound(steps.begin(), steps.end(), step), step);
-      }
-    }
-    if (outcome && options.criterion != TriQuadCriterion::Deviation)
-    {
-      Monitor part = partOf(monitor, done, 1.0);
-      outcome = runWithSteps(mesh, positions, options, steps, part, result);
-    }
-    if (outcome && !monitor.update(1.0))
-    {
-      outcome = { Status::Cancelled, "Cancelled." };
-    }
-  }
-  catch (const std::bad_alloc&)
-  {
-    outcome = { Status::OutOfMemory,
-      "Not enough memory to choose among " + std::to_string(positions.steps()) +
-        " time steps. Choose fewer steps." };
-  }
-  if (!outcome)
-  {
-    result = TriQuadDecimationResult();
     steps.clear();
   }
   return outcome;

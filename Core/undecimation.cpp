@@ -4,11 +4,10 @@
 #include "undecimation.h"
 
 #include "compiler.h"
+#include "guarded.h"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <new>
 #include <string>
 
 namespace undecimate
@@ -47,29 +46,8 @@ struct Shape
 
 Outcome Undecimation::open(const RecordView& record, const Index* baseCells, Monitor* monitor)
 {
-  *this = Undecimation();
-  Outcome outcome;
-  try
-  {
-    outcome = this->check(record, baseCells, MonitorShare(monitor));
-  }
-  catch (const std::bad_alloc&)
-  {
-    outcome = { Status::OutOfMemory, "Not enough memory to open the record." };
-  }
-  catch (const std::exception& failure)
-  {
-    outcome = { Status::Cancelled, std::string("Cancelled: ") + failure.what() };
-  }
-  catch (...)
-  {
-    outcome = { Status::Cancelled, "Cancelled by an unknown exception." };
-  }
-  if (!outcome)
-  {
-    *this = Undecimation();
-  }
-  return outcome;
+  return guarded("Not enough memory to open the record.", *this,
+    [&] { return this->check(record, baseCells, MonitorShare(monitor)); });
 }
 
 // The work of open(): take the record and the cells, and walk to the finest level and back.
