@@ -80,6 +80,12 @@ class Vtk(Rival):
     def convert(self, data, values):
         return data
 
+    def filter(self, triangles, total):
+        import vtkmodules.vtkFiltersCore as core
+        f = getattr(core, self.name)()
+        f.SetTargetReduction(1 - triangles / total)
+        return f
+
     def run(self, data, triangles):
         f = self.filter(triangles, data.GetNumberOfPolys())
         f.SetInputData(data)
@@ -99,14 +105,13 @@ class Vtk(Rival):
 
 
 class VtkDecimatePro(Vtk):
+    name = "vtkDecimatePro"
     keeps_nodes = True
     fast = False
     preserve_topology = False
 
     def filter(self, triangles, total):
-        from vtkmodules.vtkFiltersCore import vtkDecimatePro
-        f = vtkDecimatePro()
-        f.SetTargetReduction(1 - triangles / total)
+        f = super().filter(triangles, total)
         f.SetPreserveTopology(self.preserve_topology)
         return f
 
@@ -116,13 +121,8 @@ class VtkDecimateProTopology(VtkDecimatePro):
 
 
 class VtkQuadric(Vtk):
+    name = "vtkQuadricDecimation"
     fast = False
-
-    def filter(self, triangles, total):
-        from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
-        f = vtkQuadricDecimation()
-        f.SetTargetReduction(1 - triangles / total)
-        return f
 
 
 class VtkQuadricOld(VtkQuadric):
