@@ -4,6 +4,7 @@
 #include "hash_queue_decimation.h"
 #include "monitor.h"
 #include "testing/meshes.h"
+#include "testing/progress.h"
 
 #include <gtest/gtest.h>
 
@@ -28,12 +29,7 @@ TEST(Monitor, StartsAtZero)
 TEST(Monitor, ReportsOnlyWhatIsNewAndNotTooOften)
 {
   std::vector<double> seen;
-  Monitor monitor(
-    [&](double fraction)
-    {
-      seen.push_back(fraction);
-      return true;
-    });
+  Monitor monitor = testing::recording(seen);
   for (int i = 0; i <= 100000; ++i)
   {
     EXPECT_TRUE(monitor.update(i / 100000.0));
@@ -57,12 +53,7 @@ TEST(Monitor, FractionsDoNotGoBeyondOne)
 TEST(Monitor, SmallerFractionStartsTheNextCall)
 {
   std::vector<double> seen;
-  Monitor monitor(
-    [&](double fraction)
-    {
-      seen.push_back(fraction);
-      return true;
-    });
+  Monitor monitor = testing::recording(seen);
   for (const double fraction : { 0.5, 1.0, 0.0, 0.5, 1.0 })
   {
     EXPECT_TRUE(monitor.update(fraction));
@@ -180,12 +171,7 @@ protected:
 TEST_P(MonitoredDecimation, ProgressIncreasesToOneInSmallSteps)
 {
   std::vector<double> seen;
-  Monitor monitor(
-    [&](double fraction)
-    {
-      seen.push_back(fraction);
-      return true;
-    });
+  Monitor monitor = testing::recording(seen);
   ASSERT_TRUE(decimate(mesh.view(), options, monitor, result));
   ASSERT_FALSE(seen.empty());
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
@@ -251,12 +237,7 @@ TEST_P(MonitoredDecimation, CancelledFromAnotherThreadStopsOrIsTooLate)
 TEST_P(MonitoredDecimation, ServesOneCallAfterTheOther)
 {
   std::vector<double> seen;
-  Monitor monitor(
-    [&](double fraction)
-    {
-      seen.push_back(fraction);
-      return true;
-    });
+  Monitor monitor = testing::recording(seen);
   for (int call = 0; call < 3; ++call)
   {
     seen.clear();

@@ -45,6 +45,19 @@ struct Rows
   const float* data() const { return this->values.data(); }
 };
 
+// The same point in all lanes.
+Rows constant(int lanes, float x, float y, float z)
+{
+  Rows rows(lanes);
+  for (int i = 0; i < lanes; ++i)
+  {
+    rows.values[i] = x;
+    rows.values[lanes + i] = y;
+    rows.values[2 * lanes + i] = z;
+  }
+  return rows;
+}
+
 Point minus(const Point& a, const Point& b)
 {
   return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
@@ -123,18 +136,10 @@ TEST_P(TimeLanes, MeasureDistancesToTriangles)
 TEST_P(TimeLanes, KeepTheNearestAndItsValues)
 {
   const int lanes = GetParam();
-  Rows a(lanes);
-  Rows b(lanes);
-  Rows c(lanes);
-  Rows p(lanes);
-  for (int i = 0; i < lanes; ++i)
-  {
-    b.values[i] = 1.0F;
-    c.values[lanes + i] = 1.0F;
-    p.values[i] = 0.25F;
-    p.values[lanes + i] = 0.5F;
-    p.values[2 * lanes + i] = 0.5F;
-  }
+  const Rows a(lanes);
+  const Rows b = constant(lanes, 1.0F, 0.0F, 0.0F);
+  const Rows c = constant(lanes, 0.0F, 1.0F, 0.0F);
+  const Rows p = constant(lanes, 0.25F, 0.5F, 0.5F);
   const std::vector<float> va(lanes, 10.0F);
   const std::vector<float> vb(lanes, 14.0F);
   const std::vector<float> vc(lanes, 12.0F);
@@ -259,25 +264,15 @@ TEST_P(TimeLanes, QuadricsAddUp)
 TEST_P(TimeLanes, BoundaryPlanesStandOnTheirCell)
 {
   const int lanes = GetParam();
-  Rows a(lanes);
-  Rows b(lanes);
-  Rows c(lanes);
-  for (int i = 0; i < lanes; ++i)
-  {
-    b.values[i] = 2.0F;
-    c.values[lanes + i] = 1.0F;
-  }
+  const Rows a(lanes);
+  const Rows b = constant(lanes, 2.0F, 0.0F, 0.0F);
+  const Rows c = constant(lanes, 0.0F, 1.0F, 0.0F);
   const float* corners[3] = { a.data(), b.data(), c.data() };
   std::vector<std::vector<float>> quadrics(3, std::vector<float>(kQuadricRows * lanes, 0.0F));
   float* rows[3] = { quadrics[0].data(), quadrics[1].data(), quadrics[2].data() };
   addBoundaryQuadrics(lanes, corners, 3, 0, 1.0F, rows);
-  Rows d(lanes);
-  for (int i = 0; i < lanes; ++i)
-  {
-    d.values[i] = 5.0F;             // along: free
-    d.values[lanes + i] = 0.5F;     // off the line
-    d.values[2 * lanes + i] = 3.0F; // up: free
-  }
+  // Along and up the cell's plane it is free; off the line it is not.
+  const Rows d = constant(lanes, 5.0F, 0.5F, 3.0F);
   std::vector<float> squares(lanes);
   quadricValues(lanes, quadrics[0].data(), d.data(), squares.data());
   for (int i = 0; i < lanes; ++i)

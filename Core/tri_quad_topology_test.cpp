@@ -215,13 +215,24 @@ TEST(TriQuadTopology, QuadEdgesNeedTheNeighbourRuleToo)
   EXPECT_EQ(tryAll(rules), std::make_pair(true, false));
 }
 
-// [W06] fig. 3: two quads become triangles, nothing else changes.
-TEST(TriQuadTopology, QuadEdgeMakesTriangles)
+// A grid of 4 x 4 quads. Node 12 is the middle, and 2 the middle of a side.
+class QuadGrid : public ::testing::Test
 {
-  std::mt19937 random(1);
-  const MixedMesh mesh = testing::mixedGrid(4, 4, false, false, 0.0, random);
-  TriQuadTopology topology(mesh.view());
+protected:
+  QuadGrid()
+    : topology(this->mesh.view())
+  {
+  }
+
+  std::mt19937 random{ 1 };
+  const MixedMesh mesh = testing::mixedGrid(4, 4, false, false, 0.0, this->random);
+  TriQuadTopology topology;
   Fan fan;
+};
+
+// [W06] fig. 3: two quads become triangles, nothing else changes.
+TEST_F(QuadGrid, QuadEdgeMakesTriangles)
+{
   ASSERT_TRUE(topology.gather(12, fan)); // the middle
   EXPECT_FALSE(fan.boundary);
   EXPECT_EQ(fan.cellCount, 4);
@@ -236,23 +247,15 @@ TEST(TriQuadTopology, QuadEdgeMakesTriangles)
   EXPECT_TRUE(testing::isValidMesh(cells));
 }
 
-TEST(TriQuadTopology, RefusesNodesThatAreNoNeighbours)
+TEST_F(QuadGrid, RefusesNodesThatAreNoNeighbours)
 {
-  std::mt19937 random(1);
-  const MixedMesh mesh = testing::mixedGrid(4, 4, false, false, 0.0, random);
-  TriQuadTopology topology(mesh.view());
-  Fan fan;
   ASSERT_TRUE(topology.gather(12, fan));
   EXPECT_FALSE(topology.mayCollapse(fan, 18)) << "across a quad";
   EXPECT_FALSE(topology.mayCollapse(fan, 24));
 }
 
-TEST(TriQuadTopology, BoundaryNodesStayOnTheBoundary)
+TEST_F(QuadGrid, BoundaryNodesStayOnTheBoundary)
 {
-  std::mt19937 random(1);
-  const MixedMesh mesh = testing::mixedGrid(4, 4, false, false, 0.0, random);
-  TriQuadTopology topology(mesh.view());
-  Fan fan;
   ASSERT_TRUE(topology.gather(2, fan));
   EXPECT_TRUE(fan.boundary);
   EXPECT_TRUE(topology.mayCollapse(fan, 1));

@@ -4,6 +4,7 @@
 #include "undecimation.h"
 
 #include "testing/decimated.h"
+#include "testing/progress.h"
 
 #include <gtest/gtest.h>
 
@@ -374,12 +375,7 @@ protected:
 TEST_F(MonitoredUndecimation, ProgressIncreasesToOne)
 {
   std::vector<double> seen;
-  Monitor monitor(
-    [&](double fraction)
-    {
-      seen.push_back(fraction);
-      return true;
-    });
+  Monitor monitor = testing::recording(seen);
   Undecimation cursor;
   const auto expectProgress = [&seen]
   {
