@@ -20,6 +20,15 @@
 #define UNDECIMATE_INLINE inline
 #endif
 
+/// A function with loops that profit from wide vectors: one binary runs everywhere, and uses wider
+/// ones where there are some. Fused multiply-add stays off, so that results do not depend on the
+/// machine.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__)
+#define UNDECIMATE_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define UNDECIMATE_VECTOR_CLONES
+#endif
+
 namespace undecimate
 {
 

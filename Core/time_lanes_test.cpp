@@ -285,17 +285,7 @@ TEST_P(TimeLanes, BoundaryPlanesStandOnTheirCell)
 TEST_P(TimeLanes, RefuseCellsThatTurnOrFold)
 {
   const int lanes = GetParam();
-  const auto at = [lanes](float x, float y, float z)
-  {
-    Rows rows(lanes);
-    for (int i = 0; i < lanes; ++i)
-    {
-      rows.values[i] = x;
-      rows.values[lanes + i] = y;
-      rows.values[2 * lanes + i] = z;
-    }
-    return rows;
-  };
+  const auto at = [lanes](float x, float y, float z) { return constant(lanes, x, y, z); };
   const Rows a = at(0, 0, 0);
   const Rows b = at(1, 0, 0);
   const Rows c = at(1, 1, 0);

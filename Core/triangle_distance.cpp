@@ -3,15 +3,9 @@
 
 #include "triangle_distance.h"
 
-#include <cmath>
+#include "compiler.h"
 
-// One binary runs everywhere and uses wider vectors where there are some. Fused multiply-add stays
-// off, so that results do not depend on the machine.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__)
-#define UNDECIMATE_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define UNDECIMATE_VECTOR_CLONES
-#endif
+#include <cmath>
 
 namespace undecimate
 {
