@@ -18,6 +18,15 @@ namespace undecimate
 namespace
 {
 
+// The queue does not go by the error alone. Nodes are best spent on the mean error of a linear
+// interpolation where error times area is the same all over, and on the root mean square where
+// error times the root of the area is. So the cost is the deviation times this power of the area of
+// the hole (in mean holes): as much as the mean gains without a price in the largest deviation; and
+// the errors of arrays, of which the mean counts as much as the largest, times that power.
+constexpr double kDistancePower = 1.0 / 16.0;
+constexpr double kArrayPower = 1.0 / 2.0;
+constexpr double kMeanHole = 6.0; // triangles
+
 constexpr Vector kOrigin{ 0.0, 0.0, 0.0 };
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -31,6 +40,12 @@ constexpr int kMaximumCompared = 16;
 constexpr int kMaximumFans = 12;
 constexpr int kMaximumPairs = kMaximumCompared * (kMaximumCompared - 1) / 2;
 constexpr int kMaximumTriples = kMaximumPairs * (kMaximumCompared - 2) / 3;
+
+// Cosine of two neighbours that lie on each other.
+constexpr double kFolded = -0.985;
+
+// Where so few nodes were removed, triangles are looked at more closely.
+constexpr std::size_t kFewSamples = 32;
 
 // Samples are compared in chunks that stay in the cache.
 constexpr int kChunk = 256;
@@ -76,6 +91,24 @@ double diagonalOf(const TriangleTopology& topology)
   const Vector size = high - low;
   const double diagonal = std::sqrt(dot(size, size));
   return std::isfinite(diagonal) ? diagonal : 0.0;
+}
+
+/// A unit vector in 64 bits, for MeshNode::sum, and back, of any length.
+constexpr double kPackedUnit = 32767.0;
+
+std::uint64_t packed(const Vector& unit)
+{
+  const auto part = [](double value) -> std::uint64_t {
+    return static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(kPackedUnit * value)));
+  };
+  return part(unit.x) | part(unit.y) << 16 | part(unit.z) << 32;
+}
+
+Vector unpacked(std::uint64_t bits)
+{
+  const auto part = [bits](int shift) -> double
+  { return static_cast<std::int16_t>(static_cast<std::uint16_t>(bits >> shift)); };
+  return { part(0), part(16), part(32) };
 }
 
 /// Room for at least so many values; what was there is kept, and nothing is cleared.
@@ -129,7 +162,9 @@ struct DeviationCriterion::Internals
   TriangleTopology& topology;
   OriginalSurface original;
   HeightFieldDirection heightField;
-  double unit = 0.0; // 1 / diagonal: distances are in diagonals from the start
+  double triangleCount = 0.0; // that are left
+  double holeArea = 0.0;      // of the mean hole, were there one triangle
+  double unit = 0.0;          // 1 / diagonal: distances are in diagonals from the start
 
   // Nodal arrays: an error e of array k counts as the distance arrayScales[k] * e. Holes at nodes
   // where an array is undefined (NaN) stay open.
@@ -139,21 +174,25 @@ struct DeviationCriterion::Internals
   bool useArrays = false;
   std::vector<unsigned char> undefined; // empty if there is none
 
-  // Nodes removed so far: a list for each triangle (its head is Triangle::first), and one for each
-  // boundary edge (by its first node), if there is a boundary.
-  std::vector<Index> next;
+  // Nodes removed so far: a list for each triangle (its head is Triangle::first, the next is in
+  // MeshNode::value), and one for each boundary edge (by its first node), if there is a boundary.
   std::vector<Index> boundaryFirst;
   std::vector<Index> boundaryNext;
 
   // The hole at hand.
   std::array<Vector, kMaximumPatchCells + 1> ring;
+  std::array<Vector, kMaximumPatchCells + 1> ringNormals; // of the original surface
   std::array<Vector, kMaximumPatchCells> oldNormals;
   Vector normal;
   double radius = 0.0;
-  Rows samples;                   // the node, then the nodes removed before
-  std::vector<Index> sampleNodes; // all of them
-  bool untouched = false;         // all triangles of the hole are original ones
-  std::vector<float> values;      // of the arrays: a row of samples for each component
+  double costFactor = 1.0;          // of the error, for the queue
+  double arrayFactor = 1.0;         // of the arrays' errors, besides
+  Rows samples;                     // the node, then the nodes removed before
+  std::vector<Index> sampleNodes;   // all of them
+  Rows between;                     // middles of original edges and triangles
+  std::vector<std::uint64_t> marks; // a bit a node: in sampleNodes
+  bool untouched = false;           // all triangles of the hole are original ones
+  std::vector<float> values;        // of the arrays: a row of samples for each component
   PointRows sampleRows;
   double fixedSquare = 0.0; // what every triangulation costs: the new boundary edge
 
@@ -176,7 +215,7 @@ struct DeviationCriterion::Internals
     float square = 0.0F; // largest over the samples in it
   };
   std::array<Candidate, kMaximumTriples> candidates;
-  std::array<float, kMaximumPairs> crossings; // of new edges, see crossingSquare()
+  std::array<float, kMaximumPairs> crossings; // of new edges, see crossingSquares()
   std::vector<float> sides;                   // a row of a chunk for each pair
   std::array<float, kChunk> flatX;            // samples in the plane, a chunk
   std::array<float, kChunk> flatY;
@@ -189,12 +228,25 @@ struct DeviationCriterion::Internals
   std::vector<float> weightC;
   std::vector<float> sums;
   std::array<std::array<bool, kMaximumPatchCells + 1>, kMaximumPatchCells + 1> forbidden;
+  std::vector<int> refused; // candidates that may not be part of the new surface
 
+  struct Squares
+  {
+    double distance = 0.0;
+    double array = 0.0; // of the arrays' errors, with their scales and arrayFactor
+
+    double largest() const { return std::max(this->distance, this->array); }
+    void include(const Squares& other)
+    {
+      this->distance = std::max(this->distance, other.distance);
+      this->array = std::max(this->array, other.array);
+    }
+  };
   struct Best
   {
     bool found = false;
     double score = HUGE_VAL;
-    double square = 0.0;
+    Squares squares;
     HoleTriangulation filling;
   };
   Best best;
@@ -219,7 +271,7 @@ struct DeviationCriterion::Internals
     const NodalArrayView& array = this->arrays[n];
     const double value = array.values[std::size_t{ 1 } * array.components * node + component];
     return static_cast<float>(
-      this->arrayScales[n] * (value - this->arrayRanges[n].lowest[component]));
+      this->arrayFactor * this->arrayScales[n] * (value - this->arrayRanges[n].lowest[component]));
   }
 
   void boundarySquare(const Hole& hole);
@@ -231,7 +283,7 @@ struct DeviationCriterion::Internals
     double fraction; // of the edge; clamped
   };
   double arraySquare(const EdgePlace& p, const EdgePlace& q) const;
-  float crossingSquare(const Hole& hole, int i, int j) const;
+  Squares crossingSquares(const Hole& hole, int i, int j) const;
   bool isRingEdge(const Hole& hole, int i, int j) const
   {
     return j == i + 1 || (!hole.boundary && i == 0 && j == hole.size - 1);
@@ -241,7 +293,8 @@ struct DeviationCriterion::Internals
   const float* chunkErrors(const Hole& hole, const Triple& t, int first, int count);
   bool chooseTriangulation(const Hole& hole, HoleTriangulation& filling) const;
   void fillRow(const Hole& hole, const Triple& t, int row);
-  double sampleSquare(int count) const;
+  Squares sampleSquares(int count) const;
+  double betweenSquare(const Hole& hole, const HoleTriangulation& filling);
   double reverseSquare(const Hole& hole, const HoleTriangulation& filling, double square) const;
   void offer(const Hole& hole, const HoleTriangulation& filling);
   double shapeTerm(double shape) const { return kShapeWeight * this->radius * (1.0 - shape); }
@@ -249,8 +302,11 @@ struct DeviationCriterion::Internals
   void compareSome(const Hole& hole);
   bool findBest(const Hole& hole);
   bool forbidExisting(const Hole& hole);
+  bool liesOn(const Hole& hole, int triangle) const;
+  bool refuseFolded(const Hole& hole);
   void assign(const HoleTriangulation& filling);
   double cost() const;
+  double error() const;
 };
 
 DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
@@ -281,7 +337,21 @@ DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTop
       }
     }
   }
-  in.next.assign(nodeCount, kNone);
+  in.marks.assign(static_cast<std::size_t>(nodeCount) / 64 + 1, 0);
+  in.triangleCount = topology.triangleCount();
+  for (Index t = 0; t < topology.triangleCount(); ++t)
+  {
+    const auto& nodes = topology.triangle(t).nodes;
+    const Vector a = in.unit * topology.node(nodes[0]).position;
+    const Vector normal = cross(in.unit * topology.node(nodes[1]).position - a,
+      in.unit * topology.node(nodes[2]).position - a);
+    const double area = 0.5 * std::sqrt(dot(normal, normal));
+    in.holeArea += std::isfinite(area) ? kMeanHole * area : 0.0;
+  }
+  for (Index node = 0; node < nodeCount; ++node)
+  {
+    topology.node(node).sum = packed(in.original.normal(node));
+  }
   for (Index node = 0; node < nodeCount; ++node)
   {
     if (topology.kind(node) == NodeKind::Boundary)
@@ -310,16 +380,23 @@ bool DeviationCriterion::Internals::prepare(const Hole& hole)
     {
       return false;
     }
-    this->ring[i] = this->unit * (this->topology.node(hole.ring[i]).position - center);
+    const MeshNode& node = this->topology.node(hole.ring[i]);
+    this->ring[i] = this->unit * (node.position - center);
+    this->ringNormals[i] = unpacked(node.sum);
     square = std::max(square, dot(this->ring[i], this->ring[i]));
   }
   this->radius = std::sqrt(square);
   this->normal = kOrigin;
+  double area = 0.0;
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     this->oldNormals[i] = cross(this->ring[i], this->ring[i + 1 == hole.size ? 0 : i + 1]);
     this->normal = this->normal + this->oldNormals[i];
+    area += 0.5 * std::sqrt(dot(this->oldNormals[i], this->oldNormals[i]));
   }
+  const double ratio = area * this->triangleCount / this->holeArea;
+  this->costFactor = std::pow(ratio, kDistancePower);
+  this->arrayFactor = this->useArrays ? std::pow(ratio, kArrayPower - kDistancePower) : 1.0;
   const double length = std::sqrt(dot(this->normal, this->normal));
   if (!(length > 0.0) || !std::isfinite(length))
   {
@@ -342,7 +419,7 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
     const TriangleTopology::Triangle& triangle =
       this->topology.triangle(triangleOf(hole.corners[i]));
     this->untouched = this->untouched && triangle.spare == 0;
-    for (Index node = triangle.first; node != kNone; node = this->next[node])
+    for (Index node = triangle.first; node != kNone; node = this->topology.node(node).value)
     {
       this->samples.add(this->unit * (this->topology.node(node).position - center));
       this->sampleNodes.push_back(node);
@@ -404,6 +481,12 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
   {
     return candidate;
   }
+  // Many small turns would add up to an upside-down triangle.
+  if (std::all_of(t.begin(), t.end(),
+        [&](unsigned char i) { return triangle.opposes(this->ringNormals[i]); }))
+  {
+    return candidate;
+  }
   bool onRing = false;
   for (int k = 0; k < 3; ++k)
   {
@@ -446,7 +529,8 @@ double DeviationCriterion::Internals::arraySquare(const EdgePlace& p, const Edge
         const double to = values[std::size_t{ 1 } * array.components * place.to];
         return from + std::clamp(place.fraction, 0.0, 1.0) * (to - from);
       };
-      const double difference = this->arrayScales[n] * (valueAt(p) - valueAt(q));
+      const double difference =
+        this->arrayFactor * this->arrayScales[n] * (valueAt(p) - valueAt(q));
       sum += difference * difference;
     }
     largest = std::max(largest, sum);
@@ -456,26 +540,27 @@ double DeviationCriterion::Internals::arraySquare(const EdgePlace& p, const Edge
 
 // Where a new edge crosses the old ones its distance to the old surface has its extremes: two
 // surfaces of flat pieces are farthest apart at a node of one or at a crossing of their edges.
-float DeviationCriterion::Internals::crossingSquare(const Hole& hole, int i, int j) const
+DeviationCriterion::Internals::Squares DeviationCriterion::Internals::crossingSquares(
+  const Hole& hole, int i, int j) const
 {
   const Vector& a = this->ring[i];
   const Vector along = this->ring[j] - a;
   // The old edges between i and j, or those of the other side, whichever lie across from the node.
   const bool nodeOnLeft = dot(cross(along, kOrigin - a), this->normal) >= 0.0;
-  double largest = 0.0;
+  Squares largest;
   const auto measure = [&](int k)
   {
     const Vector& old = this->ring[k];
     const Vector m = cross(along, old);
     const double square = dot(m, m);
     const double height = dot(a, m);
-    if (height * height > largest * square)
+    if (height * height > largest.distance * square)
     {
-      largest = height * height / square;
+      largest.distance = height * height / square;
     }
     if (this->useArrays && square > 0.0)
     {
-      largest = std::max(largest,
+      largest.array = std::max(largest.array,
         this->arraySquare({ hole.ring[i], hole.ring[j], dot(cross(old, a), m) / square },
           { hole.node, hole.ring[k], dot(cross(along, a), m) / square }));
     }
@@ -498,7 +583,7 @@ float DeviationCriterion::Internals::crossingSquare(const Hole& hole, int i, int
       measure(k);
     }
   }
-  return static_cast<float>(largest);
+  return largest;
 }
 
 // All triangles of a small hole, and the edges that they would add.
@@ -508,8 +593,9 @@ void DeviationCriterion::Internals::judgeAll(const Hole& hole)
   {
     for (int i = 0; i < j; ++i)
     {
-      this->crossings[pairNumber(i, j)] =
-        this->isRingEdge(hole, i, j) ? 0.0F : this->crossingSquare(hole, i, j);
+      this->crossings[pairNumber(i, j)] = this->isRingEdge(hole, i, j)
+        ? 0.0F
+        : static_cast<float>(this->crossingSquares(hole, i, j).largest());
     }
   }
   int number = 0;
@@ -524,6 +610,10 @@ void DeviationCriterion::Internals::judgeAll(const Hole& hole)
             static_cast<unsigned char>(k) });
       }
     }
+  }
+  for (const int triple : this->refused)
+  {
+    this->candidates[triple].valid = false;
   }
 }
 
@@ -762,10 +852,11 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
 
 // Largest over the samples of the squared distance to the nearest triangle, and of the arrays'
 // error there.
-double DeviationCriterion::Internals::sampleSquare(int count) const
+DeviationCriterion::Internals::Squares DeviationCriterion::Internals::sampleSquares(int count) const
 {
   const int size = this->sampleRows.size;
   float largest = 0.0F;
+  float largestError = 0.0F;
   for (int begin = 0; begin < size; begin += kRowBlock)
   {
     float nearest[kRowBlock];
@@ -794,23 +885,117 @@ double DeviationCriterion::Internals::sampleSquare(int count) const
     }
     for (int i = 0; i < kRowBlock; ++i)
     {
-      const float worse = error[i] > nearest[i] ? error[i] : nearest[i];
-      largest = worse > largest ? worse : largest;
+      largest = nearest[i] > largest ? nearest[i] : largest;
+      largestError = error[i] > largestError ? error[i] : largestError;
     }
   }
-  return largest;
+  return { largest, largestError };
+}
+
+// Largest squared distance from the middles of the original edges and triangles in the hole to the
+// new surface: where it has a valley they are farther from it than the nodes.
+double DeviationCriterion::Internals::betweenSquare(
+  const Hole& hole, const HoleTriangulation& filling)
+{
+  const Vector center = this->topology.node(hole.node).position;
+  const auto mark = [this](Index node) -> std::uint64_t&
+  { return this->marks[static_cast<std::size_t>(node) / 64]; };
+  const auto bit = [](Index node) { return std::uint64_t{ 1 } << (node % 64); };
+  const auto isMarked = [&](Index node) { return (mark(node) & bit(node)) != 0; };
+  const Index* end = hole.ring.data() + hole.size;
+  const auto isHere = [&](Index node)
+  { return isMarked(node) || std::find(hole.ring.data(), end, node) != end; };
+  for (const Index node : this->sampleNodes)
+  {
+    mark(node) |= bit(node);
+  }
+  this->between.clear();
+  const bool few = this->sampleNodes.size() <= kFewSamples;
+  for (const Index node : this->sampleNodes)
+  {
+    this->original.visitTriangles(node,
+      [&](const std::array<Index, 3>& corners)
+      {
+        std::array<Vector, 3> places;
+        for (int c = 0; c < 3; ++c)
+        {
+          // Each triangle once: by its first node that was removed.
+          if (!isHere(corners[c]) || (corners[c] < node && isMarked(corners[c])))
+          {
+            return;
+          }
+          places[c] = this->unit * (this->topology.node(corners[c]).position - center);
+        }
+        this->between.add((1.0 / 3.0) * (places[0] + places[1] + places[2]));
+        for (int c = 0; few && c < 3; ++c)
+        {
+          this->between.add((1.0 / 6.0) * (places[0] + places[1] + places[2]) + 0.5 * places[c]);
+        }
+        for (int c = 0; c < 3; ++c)
+        {
+          // The triangle beside has the edge the other way round.
+          const int next = nextCorner(c);
+          if (corners[c] < corners[next])
+          {
+            this->between.add(0.5 * (places[c] + places[next]));
+            if (few)
+            {
+              this->between.add(0.75 * places[c] + 0.25 * places[next]);
+              this->between.add(0.25 * places[c] + 0.75 * places[next]);
+            }
+          }
+        }
+      });
+  }
+  for (const Index node : this->sampleNodes)
+  {
+    mark(node) = 0;
+  }
+  if (this->between.count == 0)
+  {
+    return 0.0;
+  }
+  const PointRows rows = this->between.padded();
+  grow(this->squares, std::size_t{ 2 } * rows.size);
+  float* __restrict__ nearest = this->squares.data();
+  float* __restrict__ squareRow = nearest + rows.size;
+  std::fill_n(nearest, rows.size, kInfinity);
+  const auto measure = [&](const Vector& a, const Vector& b, const Vector& c)
+  {
+    DistanceTriangle triangle;
+    if (triangle.set(a, b, c))
+    {
+      triangle.squaredDistances(rows, squareRow);
+      for (int i = 0; i < rows.size; ++i)
+      {
+        nearest[i] = squareRow[i] < nearest[i] ? squareRow[i] : nearest[i];
+      }
+    }
+  };
+  for (int t = 0; t < filling.count; ++t)
+  {
+    const Triple& corners = filling.triangles[t];
+    measure(this->ring[corners[0]], this->ring[corners[1]], this->ring[corners[2]]);
+  }
+  // A removed node on the ring has original triangles on both sides of it.
+  for (int i = 0; i < hole.triangleCount; ++i)
+  {
+    if (hole.outer[i] != kNoCorner)
+    {
+      const auto& nodes = this->topology.triangle(triangleOf(hole.outer[i])).nodes;
+      const auto place = [&](int c)
+      { return this->unit * (this->topology.node(nodes[c]).position - center); };
+      measure(place(0), place(1), place(2));
+    }
+  }
+  return *std::max_element(nearest, nearest + rows.size);
 }
 
 // Largest squared distance from the new surface back to the original one, or `square` if that is
-// larger: along each new edge and at the middle of each new triangle. While the hole's triangles
-// are the original ones, its node and the crossings of the edges have told it all.
+// larger: along each new edge and at the middle of each new triangle.
 double DeviationCriterion::Internals::reverseSquare(
   const Hole& hole, const HoleTriangulation& filling, double square) const
 {
-  if (this->untouched)
-  {
-    return square;
-  }
   const Vector center = this->topology.node(hole.node).position;
   const double scale = 1.0 / this->unit;
   const auto measure = [&](const Vector& place)
@@ -853,7 +1038,7 @@ double DeviationCriterion::Internals::reverseSquare(
 // Measure a triangulation, and keep it if it is the best so far.
 void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulation& filling)
 {
-  double square = this->fixedSquare;
+  Squares largest{ this->fixedSquare, 0.0 };
   double shape = 1.0;
   grow(this->squares, std::size_t{ 1 } * filling.count * this->sampleRows.size);
   grow(this->errors, this->useArrays ? this->squares.size() : 0);
@@ -874,9 +1059,7 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
       const int j = std::max(triangle[c], triangle[nextCorner(c)]);
       if (!this->isRingEdge(hole, i, j))
       {
-        square = std::max<double>(square,
-          hole.size <= kMaximumCompared ? this->crossings[pairNumber(i, j)]
-                                        : this->crossingSquare(hole, i, j));
+        largest.include(this->crossingSquares(hole, i, j));
       }
     }
   }
@@ -884,13 +1067,13 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
   {
     this->fillRow(hole, filling.triangles[t], t);
   }
-  square = std::max(square, this->sampleSquare(filling.count));
-  const double score = std::sqrt(square) + this->shapeTerm(shape);
+  largest.include(this->sampleSquares(filling.count));
+  const double score = std::sqrt(largest.largest()) + this->shapeTerm(shape);
   if (score < this->best.score)
   {
     this->best.found = true;
     this->best.score = score;
-    this->best.square = square;
+    this->best.squares = largest;
     this->best.filling = filling;
     this->assign(filling);
   }
@@ -961,22 +1144,22 @@ bool DeviationCriterion::Internals::findBest(const Hole& hole)
   {
     // The triangle at a corner of the boundary goes; what it had is measured to the edge that
     // stays.
-    double square = this->fixedSquare;
+    Squares largest{ this->fixedSquare, 0.0 };
     const Vector center = this->topology.node(hole.node).position;
     const Vector along = this->ring[1] - this->ring[0];
     for (const Index node : this->sampleNodes)
     {
       const Vector place = this->unit * (this->topology.node(node).position - center);
-      square = std::max(square, squaredDistanceToSegment(place, this->ring[0], this->ring[1]));
+      largest.include({ squaredDistanceToSegment(place, this->ring[0], this->ring[1]), 0.0 });
       if (this->useArrays)
       {
         const double fraction = dot(place - this->ring[0], along) / dot(along, along);
-        square = std::max(
-          square, this->arraySquare({ hole.ring[0], hole.ring[1], fraction }, { node, node, 0.0 }));
+        largest.include({ 0.0,
+          this->arraySquare({ hole.ring[0], hole.ring[1], fraction }, { node, node, 0.0 }) });
       }
     }
     this->best.found = true;
-    this->best.square = square;
+    this->best.squares = largest;
     this->best.filling.count = 0;
     return true;
   }
@@ -1015,9 +1198,88 @@ bool DeviationCriterion::Internals::forbidExisting(const Hole& hole)
   return any;
 }
 
+// Whether a triangle of the best filling would lie on a neighbour where the old one did not.
+bool DeviationCriterion::Internals::liesOn(const Hole& hole, int triangle) const
+{
+  const auto place = [&](Index node) { return this->topology.node(node).position; };
+  const auto isFolded = [](const Vector& a, const Vector& b)
+  {
+    const double product = dot(a, b);
+    return product < 0.0 && product * product > kFolded * kFolded * dot(a, a) * dot(b, b);
+  };
+  const auto normalOf = [&](const Triple& t)
+  {
+    const Vector& a = this->ring[t[0]];
+    return cross(this->ring[t[1]] - a, this->ring[t[2]] - a);
+  };
+  const HoleTriangulation& filling = this->best.filling;
+  const Triple& t = filling.triangles[triangle];
+  const Vector normal = normalOf(t);
+  for (int c = 0; c < 3; ++c)
+  {
+    const int from = t[c];
+    const int to = t[nextCorner(c)];
+    const bool last = from + 1 == hole.size;
+    if (to == (last ? 0 : from + 1) && !(last && hole.boundary))
+    {
+      if (hole.outer[from] == kNoCorner)
+      {
+        continue;
+      }
+      const auto& nodes = this->topology.triangle(triangleOf(hole.outer[from])).nodes;
+      const Vector a = place(nodes[0]);
+      const Vector outer = cross(place(nodes[1]) - a, place(nodes[2]) - a);
+      if (isFolded(normal, outer) && !isFolded(this->oldNormals[from], outer))
+      {
+        return true;
+      }
+      continue;
+    }
+    for (int other = 0; other < triangle; ++other)
+    {
+      const Triple& u = filling.triangles[other];
+      const bool shared = std::find(u.begin(), u.end(), from) != u.end() &&
+        std::find(u.begin(), u.end(), to) != u.end();
+      if (shared && isFolded(normal, normalOf(u)))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Refuse the triangles of the best filling of a small hole that would lie on a neighbour; true if
+// there were any.
+bool DeviationCriterion::Internals::refuseFolded(const Hole& hole)
+{
+  bool any = false;
+  for (int t = 0; t < this->best.filling.count; ++t)
+  {
+    if (this->liesOn(hole, t))
+    {
+      any = true;
+      if (hole.size <= kMaximumCompared)
+      {
+        Triple sorted = this->best.filling.triangles[t];
+        std::sort(sorted.begin(), sorted.end());
+        this->refused.push_back(tripleNumber(sorted[0], sorted[1], sorted[2]));
+      }
+    }
+  }
+  return any;
+}
+
 double DeviationCriterion::Internals::cost() const
 {
-  return std::sqrt(this->best.square);
+  return this->costFactor * std::sqrt(this->best.squares.largest());
+}
+
+double DeviationCriterion::Internals::error() const
+{
+  const Squares& squares = this->best.squares;
+  return std::sqrt(
+    std::max(squares.distance, squares.array / (this->arrayFactor * this->arrayFactor)));
 }
 
 bool DeviationCriterion::evaluate(Index node, double& cost)
@@ -1050,11 +1312,18 @@ bool DeviationCriterion::retriangulate(
   in.gatherSamples(hole);
   bool found = in.findBest(hole);
   bool forbade = false;
-  while (found && in.forbidExisting(hole))
+  while (found)
   {
-    forbade = true;
-    found = in.findBest(hole);
+    const bool existing = in.forbidExisting(hole);
+    const bool folded = in.refuseFolded(hole);
+    if (!existing && !folded)
+    {
+      break;
+    }
+    forbade = forbade || existing;
+    found = (!folded || hole.size <= kMaximumCompared) && in.findBest(hole);
   }
+  in.refused.clear();
   if (forbade)
   {
     for (int i = 0; i < hole.size; ++i)
@@ -1070,16 +1339,25 @@ bool DeviationCriterion::retriangulate(
   return found;
 }
 
-double DeviationCriterion::confirm(const Hole& hole, const HoleTriangulation& filling)
+double DeviationCriterion::confirm(const Hole& hole, const HoleTriangulation& filling, double& cost)
 {
   Internals& in = *this->internals_;
-  in.best.square = in.reverseSquare(hole, filling, in.best.square);
-  return in.cost();
+  // While the hole's triangles are original ones, its node and the crossings of the edges have told
+  // it all.
+  if (!in.untouched)
+  {
+    double& square = in.best.squares.distance;
+    square = std::max(square, in.betweenSquare(hole, filling));
+    square = std::max(square, in.reverseSquare(hole, filling, in.error() * in.error()));
+  }
+  cost = in.cost();
+  return in.error();
 }
 
 void DeviationCriterion::removed(const Hole& hole, const HoleTriangulation& filling)
 {
   Internals& in = *this->internals_;
+  in.triangleCount -= hole.triangleCount - filling.count;
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     TriangleTopology::Triangle& triangle = in.topology.triangle(triangleOf(hole.corners[i]));
@@ -1092,7 +1370,7 @@ void DeviationCriterion::removed(const Hole& hole, const HoleTriangulation& fill
     const Index slot =
       triangleOf(filling.count == 0 ? hole.outer[0] : hole.corners[in.assignment[s]]);
     Index& first = in.topology.triangle(slot).first;
-    in.next[node] = first;
+    in.topology.node(node).value = first;
     first = node;
   }
   if (hole.boundary)

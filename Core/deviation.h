@@ -24,7 +24,11 @@
 /// nearest distances.
 ///
 /// Refused are new triangles that turn away from the old ones on their ring edges, needles more
-/// strictly than others.
+/// strictly than others; that turn away from the original normals at all three corners; and that
+/// lie on a neighbour.
+///
+/// Cost and error are two things: the queue goes by the error times the 16th root of the hole's
+/// area, that of arrays times its square root, for the sake of the mean error (deviation.md).
 ///
 /// Samples are relative to the removed node and in single precision; orientation is decided in
 /// double precision.
@@ -60,9 +64,11 @@ public:
   /// really is, see confirm().
   bool retriangulate(Index node, Hole& hole, HoleTriangulation& filling, double& cost);
 
-  /// The cost of the last retriangulate(), with the way back to the original surface, which only
-  /// those that are about to be made need to know.
-  double confirm(const Hole& hole, const HoleTriangulation& filling);
+  /// Look closer at the last retriangulate(): at places between the nodes of the original surface,
+  /// and the way back to it. Only removals that are about to be made need this.
+  /// @param[in,out] cost not smaller than before
+  /// @return the error: the deviation, or the weighted error of the arrays if that is larger
+  double confirm(const Hole& hole, const HoleTriangulation& filling, double& cost);
 
   /// Take note of a removal (of the node and filling of the last retriangulate()).
   void removed(const Hole& hole, const HoleTriangulation& filling);

@@ -68,6 +68,9 @@ public:
     return this->faces(oldNormal, this->minimumCosine_);
   }
 
+  /// Whether the normal points away from a direction of any length.
+  bool opposes(const Vector& direction) const { return dot(this->cross_, direction) < 0.0; }
+
 private:
   // shape() < limit
   bool shapeBelow(double limit) const

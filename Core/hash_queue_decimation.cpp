@@ -182,20 +182,21 @@ public:
       {
         continue;
       }
+      double error = cost;
       if constexpr (CriterionType::kLazy)
       {
-        cost = this->criterion_.confirm(this->hole_, this->filling_);
+        error = this->criterion_.confirm(this->hole_, this->filling_, cost);
         if (mustWait())
         {
           continue;
         }
       }
-      if (cost > this->goal_.error)
+      if (error > this->goal_.error)
       {
         tooCostly = true;
         continue;
       }
-      this->remove(builder, cost);
+      this->remove(builder, error);
       // Step 6: re-evaluate the neighbours; they go to the end of their interval's queue.
       this->reevaluate(queue, intervals, interval);
       // Step 7: back to step 2.
@@ -295,7 +296,7 @@ private:
     }
   }
 
-  void remove(RecordBuilder& builder, double cost)
+  void remove(RecordBuilder& builder, double error)
   {
     const Hole& hole = this->hole_;
     const HoleTriangulation& filling = this->filling_;
@@ -327,7 +328,8 @@ private:
     step.oldCells = this->oldCells_.data();
     step.newCells = this->newCells_.data();
     step.sources = this->sources_.data();
-    step.error = this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * cost : cost;
+    step.error =
+      this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * error : error;
     builder.append(step);
     this->topology_.replace(hole, filling);
     this->criterion_.removed(hole, filling);

@@ -59,7 +59,7 @@ struct HashQueueDecimationOptions
   /// number: an error of the fraction f of an array's range counts as the deviation scalarWeight *
   /// f.
   std::vector<NodalArrayView> arrays;
-  double scalarWeight = 0.1; ///< >= 0; 0 = geometry only. Deviation only.
+  double scalarWeight = 0.02; ///< >= 0; 0 = geometry only. Deviation only.
 
   /// Record from which cell each new cell takes its values (needed if there is cell data).
   bool trackCellSources = false;

@@ -8,9 +8,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace undecimate
 {
@@ -871,6 +876,7 @@ TEST(NodalArrays, TwoArraysSteerTogether)
   const std::vector<float> right = bump(19.0, 11.0);
   HashQueueDecimationOptions options;
   options.targetReduction = 1.0;
+  options.scalarWeight = 0.1;
   options.maximumError = 0.003;
   options.arrays = { arrayOf(left) };
   const Decimated one(mesh, options);
@@ -899,6 +905,7 @@ TEST(NodalArrays, VectorsAreComparedByTheirDifference)
   }
   HashQueueDecimationOptions options;
   options.targetReduction = 1.0;
+  options.scalarWeight = 0.1;
   options.maximumError = 0.002;
   options.arrays = { arrayOf(vectors, 3) };
   const Decimated decimated(mesh, options);
@@ -938,6 +945,95 @@ TEST(Deviation, FlatMeshesCostNothing)
     EXPECT_EQ(decimated.cursor.nodeCount(), 4);
     EXPECT_EQ(decimated.cursor.cellCount(), 2);
     EXPECT_TRUE(testing::looksUp(mesh, baseTriangles(decimated)));
+  }
+}
+
+/// A torus with a rough skin.
+Mesh crumpled(unsigned int seed, double roughness)
+{
+  Mesh mesh = testing::torus(72, 36);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> shift(-roughness, roughness);
+  for (double& x : mesh.points)
+  {
+    x += shift(random);
+  }
+  return mesh;
+}
+
+Vector crossOf(const Mesh& mesh, const Index* corners)
+{
+  std::array<Vector, 3> p;
+  for (int c = 0; c < 3; ++c)
+  {
+    const auto at = mesh.point(corners[c]);
+    p[c] = { at[0], at[1], at[2] };
+  }
+  return cross(p[1] - p[0], p[2] - p[0]);
+}
+
+/// Triangles that are turned away from the mesh's normals at all their corners.
+int turnedOver(const Mesh& mesh, const std::vector<Index>& triangles)
+{
+  std::vector<Vector> normals(mesh.nodeCount(), Vector{ 0.0, 0.0, 0.0 });
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+  {
+    Vector& normal = normals[mesh.triangles[i]];
+    normal = normal + crossOf(mesh, mesh.triangles.data() + i / 3 * 3);
+  }
+  int count = 0;
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    const Vector normal = crossOf(mesh, triangles.data() + i);
+    count += std::all_of(triangles.begin() + i, triangles.begin() + i + 3,
+               [&](Index node) { return dot(normal, normals[node]) < 0.0; })
+      ? 1
+      : 0;
+  }
+  return count;
+}
+
+/// Edges whose two triangles lie on each other, within 8 degrees.
+int folds(const Mesh& mesh, const std::vector<Index>& triangles)
+{
+  std::map<std::pair<Index, Index>, Vector> behind;
+  int count = 0;
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    const Vector normal = crossOf(mesh, triangles.data() + i);
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const Index from = triangles[i + c];
+      const Index to = triangles[i + (c + 1) % 3];
+      const auto other = behind.find({ to, from });
+      if (other != behind.end())
+      {
+        const Vector& n = other->second;
+        count += dot(n, normal) < -0.99 * std::sqrt(dot(n, n) * dot(normal, normal)) ? 1 : 0;
+      }
+      behind[{ from, to }] = normal;
+    }
+  }
+  return count;
+}
+
+// Many small turns must not add up to a fold.
+TEST(Deviation, RoughSurfacesDoNotFold)
+{
+  for (const double roughness : { 0.03, 0.06, 0.09 })
+  {
+    const Mesh mesh = crumpled(7, roughness);
+    const int foldsBefore = folds(mesh, mesh.triangles);
+    for (const double reduction : { 0.5, 0.9, 0.97 })
+    {
+      HashQueueDecimationOptions options;
+      options.targetReduction = reduction;
+      const Decimated decimated(mesh, options);
+      const std::vector<Index> triangles = baseTriangles(decimated);
+      EXPECT_LE(turnedOver(mesh, triangles), turnedOver(mesh, mesh.triangles))
+        << roughness << " " << reduction;
+      EXPECT_LE(folds(mesh, triangles), foldsBefore) << roughness << " " << reduction;
+    }
   }
 }
 

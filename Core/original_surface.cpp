@@ -109,6 +109,21 @@ std::array<Index, 3> OriginalSurface::corners(Index triangle) const
   return { nodes[0], nodes[1], nodes[2] };
 }
 
+Vector OriginalSurface::normal(Index node) const
+{
+  Vector sum{ 0.0, 0.0, 0.0 };
+  for (Index i = this->first_[node]; i < this->first_[node + 1]; ++i)
+  {
+    const std::array<Index, 3> corners = this->corners(this->triangles_[i]);
+    const Vector& a = this->topology_.node(corners[0]).position;
+    sum = sum +
+      cross(this->topology_.node(corners[1]).position - a,
+        this->topology_.node(corners[2]).position - a);
+  }
+  const double length = std::sqrt(squaredLength(sum));
+  return length > 0.0 && std::isfinite(length) ? (1.0 / length) * sum : Vector{ 0.0, 0.0, 0.0 };
+}
+
 double OriginalSurface::squaredDistance(const Vector& point, Index start, double enough) const
 {
   std::array<Index, kMaximumVisits> visited;

@@ -31,6 +31,20 @@ public:
   /// Complexity: O(triangles around the nodes that are visited).
   double squaredDistance(const Vector& point, Index start, double enough) const;
 
+  /// Visit(corners) for each original triangle around a node.
+  template <typename Visit>
+  void visitTriangles(Index node, Visit&& visit) const
+  {
+    for (Index i = this->first_[node]; i < this->first_[node + 1]; ++i)
+    {
+      visit(this->corners(this->triangles_[i]));
+    }
+  }
+
+  /// Unit normal at a node: that of the triangles around it, weighted by their areas. Zero where
+  /// there is none, as without a triangle.
+  Vector normal(Index node) const;
+
 private:
   static constexpr int kMaximumVisits = 32; // of nodes, in a walk
 

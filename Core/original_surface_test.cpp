@@ -54,6 +54,39 @@ Index nearestNode(const Mesh& mesh, const Vector& p)
   return nearest;
 }
 
+TEST(OriginalSurface, NormalsAreUnitAndWeightedByArea)
+{
+  const Mesh mesh = testing::cube(2);
+  const TriangleTopology topology(mesh.view());
+  const TriangleMeshView view = mesh.view();
+  const OriginalSurface surface(view, topology);
+  for (Index node = 0; node < mesh.nodeCount(); ++node)
+  {
+    const Vector normal = surface.normal(node);
+    EXPECT_NEAR(dot(normal, normal), 1.0, 1e-12);
+    const Vector p = pointOf(mesh, node);
+    const double coordinates[] = { p.x, p.y, p.z };
+    const double components[] = { normal.x, normal.y, normal.z };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      // Towards the faces that the node is on, and along the others.
+      const double side = coordinates[axis] - 1.0;
+      EXPECT_GE(components[axis] * side, side == 0.0 ? 0.0 : 0.1) << node;
+      EXPECT_NEAR(components[axis] * (1.0 - std::abs(side)), 0.0, 1e-12) << node;
+    }
+  }
+}
+
+TEST(OriginalSurface, NoNormalWithoutATriangle)
+{
+  Mesh mesh = testing::cube(1);
+  const Index loose = mesh.addNode(5.0, 5.0, 5.0);
+  const TriangleMeshView view = mesh.view();
+  const TriangleTopology topology(view);
+  const Vector normal = OriginalSurface(view, topology).normal(loose);
+  EXPECT_EQ(dot(normal, normal), 0.0);
+}
+
 // From the nearest node the walk finds the nearest triangle of surfaces without folds.
 TEST(OriginalSurface, FindsTheNearestTriangleFromTheNearestNode)
 {

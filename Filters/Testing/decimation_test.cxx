@@ -993,7 +993,7 @@ TEST(Decimation, PrintsAllProperties)
   std::ostringstream text;
   filter->Print(text);
   for (const char* word : { "TargetReduction: 0.9", "TargetNodes: 0", "TargetTriangles: 0",
-         "MaximumError: 1", "Criterion: 0", "Scalars: stress", "ScalarWeight: 0.1",
+         "MaximumError: 1", "Criterion: 0", "Scalars: stress", "ScalarWeight: 0.02",
          "IntervalSpacing: 0", "IntervalNodes: 4", "PreserveBoundary: Off", "Triangulate: Off",
          "OriginalPointIds: Off", "NumberOfInputNodes: 0", "StopReason:" })
   {
