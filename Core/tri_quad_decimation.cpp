@@ -505,7 +505,7 @@ Outcome decimateTriQuadAutomatically(const TriQuadMeshView& mesh, const TimeRows
   TriQuadDecimationResult& result, std::vector<int>& steps)
 {
   steps.clear();
-  const Outcome outcome = guarded("Not enough memory to choose among " +
+  Outcome outcome = guarded("Not enough memory to choose among " +
       std::to_string(positions.steps()) + " time steps. Choose fewer steps.",
     result,
     [&] { return runAutomatically(mesh, positions, options, factor, monitor, result, steps); });
