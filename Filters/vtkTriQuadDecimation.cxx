@@ -350,6 +350,12 @@ bool vtkTriQuadDecimation::Decimate(vtkPolyData* mesh, bool pieces, bool withTim
   options.quadWeight = this->QuadWeight;
   options.arrays = in.walk.arrays();
 
+  if (this->Criterion == QUADRICS && this->GetNumberOfScalars() > 0)
+  {
+    this->WarnOnce("scalars",
+      "The arrays in Scalars do not count with the criterion Quadrics, which looks at the shape "
+      "only. Choose Deviation, or clear Scalars.");
+  }
   PassMonitor monitor(this->GetPass());
   if (withTime)
   {

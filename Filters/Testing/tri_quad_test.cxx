@@ -8,6 +8,7 @@
 #include "vtkTriQuadDecimation.h"
 #include "vtkUndecimation.h"
 
+#include "testing/tri_quad_meshes.h"
 #include "tri_quad_decimation.h"
 
 #include "vtkCallbackCommand.h"
@@ -21,6 +22,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkMath.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkMultiBlockDataSetAlgorithm.h"
 #include "vtkObjectFactory.h"
@@ -37,6 +39,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -470,6 +473,110 @@ TEST(TriQuadDecimation, WarnsOnce)
   pipe.series->Modified();
   pipe.at(2.5, 0.7);
   EXPECT_EQ(messages->warnings.size(), 4U) << messages->all();
+}
+
+// Neighbouring pieces must fit together at all levels: the nodes between them stay.
+TEST(TriQuadDecimation, KeepsTheBoundaryOfAPiece)
+{
+  Pipe pipe;
+  pipe.decimation->OriginalPointIdsOn();
+  const auto boundaryLeft = [&pipe]
+  {
+    int left = 0;
+    auto* ids = vtkIdTypeArray::SafeDownCast(
+      pipe.decimation->GetOutput()->GetPointData()->GetArray("vtkOriginalPointIds"));
+    for (vtkIdType i = 0; i < ids->GetNumberOfValues(); ++i)
+    {
+      const vtkIdType column = ids->GetValue(i) % kRows;
+      const vtkIdType row = ids->GetValue(i) / kRows;
+      left += column == 0 || column == kRows - 1 || row == 0 || row == kRows - 1;
+    }
+    return left;
+  };
+  constexpr int kBoundary = 4 * (kRows - 1);
+  pipe.decimation->UpdateTimeStep(1.0);
+  EXPECT_LT(boundaryLeft(), kBoundary / 2);
+  pipe.decimation->UpdateTimeStep(1.0, 0, 4, 0);
+  EXPECT_EQ(boundaryLeft(), kBoundary);
+  pipe.decimation->UpdateTimeStep(2.0, 0, 4, 0);
+  EXPECT_EQ(boundaryLeft(), kBoundary);
+  // The same mesh in one piece is decimated anew.
+  pipe.decimation->UpdateTimeStep(2.0, 0, 1, 0);
+  EXPECT_LT(boundaryLeft(), kBoundary / 2);
+}
+
+// A wall that stands on a floor and bends over time: at each level they meet along the whole line.
+TEST(TriQuadDecimation, HoldsTJointsTogether)
+{
+  constexpr int kQuads = 12;
+  const undecimate::testing::MixedMesh joint = undecimate::testing::mixedTJoint(kQuads);
+  const auto at = [&joint](int step)
+  {
+    auto mesh = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> points;
+    for (undecimate::Index i = 0; i < joint.nodeCount(); ++i)
+    {
+      const double* p = joint.positions[0].data() + std::size_t{ 3 } * i;
+      points->InsertNextPoint(p[0], p[1] + 0.02 * step * p[2] * p[2], p[2]);
+    }
+    vtkNew<vtkCellArray> cells;
+    for (const auto& cell : joint.cells)
+    {
+      const std::vector<vtkIdType> corners = { cell[0], cell[1], cell[2], cell[3] };
+      cells->InsertNextCell(cell[3] < 0 ? 3 : 4, corners.data());
+    }
+    mesh->SetPoints(points);
+    mesh->SetPolys(cells);
+    return mesh;
+  };
+  Pipe pipe;
+  pipe.series->make = at;
+  for (const double level : { 0.0, 0.3, 0.7, 1.0 })
+  {
+    for (const int step : { 0, kSteps - 1 })
+    {
+      vtkPolyData* mesh = pipe.at(0.5 * step, level);
+      std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
+      vtkNew<vtkIdList> corners;
+      for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c)
+      {
+        mesh->GetCellPoints(c, corners);
+        for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k)
+        {
+          const vtkIdType a = corners->GetId(k);
+          const vtkIdType b = corners->GetId((k + 1) % corners->GetNumberOfIds());
+          ++edges[std::minmax(a, b)];
+        }
+      }
+      double length = 0.0; // of the edges of three cells
+      for (const auto& [edge, cells] : edges)
+      {
+        EXPECT_LE(cells, 3);
+        double a[3];
+        double b[3];
+        mesh->GetPoint(edge.first, a);
+        mesh->GetPoint(edge.second, b);
+        length += cells == 3 ? std::sqrt(vtkMath::Distance2BetweenPoints(a, b)) : 0.0;
+      }
+      EXPECT_NEAR(length, kQuads, 1e-5) << "level " << level << ", step " << step;
+    }
+  }
+  EXPECT_LT(pipe.decimation->GetNumberOfNodes(), joint.nodeCount() / 5);
+  EXPECT_EQ(differences(pipe.at(1.5, 1.0), at(3)), "");
+}
+
+TEST(TriQuadDecimation, SaysThatScalarsDoNotCountWithQuadrics)
+{
+  Pipe pipe;
+  pipe.decimation->SetCriterionToQuadrics();
+  pipe.decimation->AddScalars("stress");
+  vtkNew<filter_testing::Messages> messages;
+  messages->watch(pipe.decimation);
+  pipe.at(0.0, 0.5);
+  pipe.at(1.0, 0.5);
+  EXPECT_EQ(messages->errors.size(), 0U) << messages->all();
+  EXPECT_EQ(messages->warnings.size(), 1U) << messages->all();
+  EXPECT_TRUE(filter_testing::has(messages->warnings, "do not count with the criterion Quadrics"));
 }
 
 TEST(TriQuadDecimation, SurvivesFiles)
