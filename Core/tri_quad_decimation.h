@@ -125,8 +125,8 @@ struct TriQuadDecimationResult
 /// @param monitor progress and cancel
 /// @param[out] result complete on Ok, empty otherwise
 /// Complexity: O(nodes * steps); Deviation O(nodes * steps * log(nodes / nodes left)).
-/// Memory: 40 bytes a node and lane for the quadrics (lanesFor()), about 120 bytes a node for the
-/// rest, besides the positions.
+/// Memory: 44 bytes a node and lane for the quadrics (lanesFor()), 130 to 210 bytes a node for the
+/// rest, besides the positions (memory.md).
 /// Throws nothing: exceptions of the monitor's callback end the call as Cancelled.
 Outcome decimateTriQuad(const TriQuadMeshView& mesh, const TimeRows& positions,
   const TriQuadDecimationOptions& options, Monitor& monitor, TriQuadDecimationResult& result);

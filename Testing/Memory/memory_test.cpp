@@ -8,6 +8,7 @@
 // Prints what Documentation/memory.md states and fails when a bound there is broken.
 
 #include "hash_queue_decimation.h"
+#include "tri_quad_decimation.h"
 #include "undecimation.h"
 
 #include <cmath>
@@ -105,6 +106,25 @@ void check(const char* what, double bytes, double bound)
   faults += !good;
 }
 
+void checkRecord(
+  const Record& record, const std::vector<Index>& baseCells, double recordBound, double cursorBound)
+{
+  const double nodes = record.nodeCount;
+  const double removed = nodes - record.baseNodeCount;
+  check("record, a removed node", static_cast<double>(record.byteSize()) / removed, recordBound);
+  const std::size_t before = liveBytes;
+  peakBytes = liveBytes;
+  Undecimation cursor;
+  if (!cursor.open(record.view(), baseCells.data()))
+  {
+    ++faults;
+  }
+  cursor.moveTo(cursor.stepCount());
+  check("cursor, a node", static_cast<double>(liveBytes - before) / nodes, cursorBound);
+  check("opening it, largest, a node", static_cast<double>(peakBytes - before) / nodes,
+    cursorBound + 1);
+}
+
 void measure(
   const Grid& grid, const char* name, Criterion criterion, bool sources, double peakBound)
 {
@@ -130,22 +150,55 @@ void measure(
   std::printf("%s%s, %.0f nodes to %d\n", name, sources ? ", with sources of cell data" : "", nodes,
     result.record.baseNodeCount);
   check("decimation, largest, a node", static_cast<double>(peakBytes - before) / nodes, peakBound);
-  const double removed = nodes - result.record.baseNodeCount;
-  check("record, a removed node", static_cast<double>(result.record.byteSize()) / removed,
-    sources ? 56 : 42);
+  checkRecord(result.record, result.baseTriangles, sources ? 56 : 42, sources ? 33 : 25);
+}
 
-  const std::size_t beforeCursor = liveBytes;
-  peakBytes = liveBytes;
-  Undecimation cursor;
-  if (!cursor.open(result.record.view(), result.baseTriangles.data()))
+// Quads that move over time, without the positions, which are the caller's.
+void measureOverTime(
+  const Grid& grid, const char* name, TriQuadCriterion criterion, int steps, double peakBound)
+{
+  const auto nodes = static_cast<Index>(grid.view.nodeCount);
+  std::vector<Index> cells; // two triangles a quad: 0 1 2, 0 2 3
+  for (std::size_t i = 0; i < grid.triangles.size(); i += 6)
   {
-    ++faults;
+    const Index* corner = grid.triangles.data() + i;
+    cells.insert(cells.end(), { corner[0], corner[1], corner[2], corner[5] });
   }
-  cursor.moveTo(cursor.stepCount());
-  check("cursor, a node (two triangles)", static_cast<double>(liveBytes - beforeCursor) / nodes,
-    sources ? 33 : 25);
-  check("opening it, largest, a node", static_cast<double>(peakBytes - beforeCursor) / nodes,
-    sources ? 34 : 26);
+  TriQuadMeshView view;
+  view.nodeCount = nodes;
+  view.cells = cells.data();
+  view.cellCount = static_cast<std::int64_t>(cells.size()) / 4;
+  const PositionFrame frame =
+    positionFrame(grid.points.data(), static_cast<const float*>(nullptr), nodes);
+  TimeRows positions(nodes, 3, steps);
+  std::vector<float> points = grid.points;
+  for (int step = 0; step < steps; ++step)
+  {
+    positions.set(
+      step, points.data(), static_cast<const float*>(nullptr), frame.origin.data(), frame.scale);
+    for (Index i = 0; i < nodes; ++i)
+    {
+      points[3 * i + 2] += 0.002F * std::sin(9.0F * points[3 * i]);
+    }
+  }
+
+  TriQuadDecimationOptions options;
+  options.criterion = criterion;
+  options.targetReduction = 0.99;
+  const std::size_t before = liveBytes;
+  peakBytes = liveBytes;
+  Monitor monitor;
+  TriQuadDecimationResult result;
+  if (const Outcome outcome = decimateTriQuad(view, positions, options, monitor, result); !outcome)
+  {
+    std::printf("%s\n", outcome.message.c_str());
+    ++faults;
+    return;
+  }
+  std::printf(
+    "Quads, %s, %d time steps, %d nodes to %d\n", name, steps, nodes, result.record.baseNodeCount);
+  check("decimation, largest, a node", static_cast<double>(peakBytes - before) / nodes, peakBound);
+  checkRecord(result.record, result.baseCells, 34, 17);
 }
 }
 
@@ -155,5 +208,8 @@ int main(int argc, char* argv[])
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, false, 215);
   measure(grid, "Deviation", Criterion::Deviation, false, 245);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, true, 235);
+  measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 3, 420);
+  measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 25, 1700);
+  measureOverTime(grid, "Quadrics", TriQuadCriterion::Quadrics, 25, 1700);
   return faults == 0 ? 0 : 1;
 }
