@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # The main job in one command, on Debian 12: installs what it needs, builds the plugin into build/,
-# decimates and undecimates Data/plate_hole.vtp, and writes pictures, meshes and numbers into
-# demo-output/. May be run again at any time.
+# decimates and undecimates Data/plate_hole.vtp and Data/crash_box/, and writes pictures, a film,
+# meshes and numbers into demo-output/. May be run again at any time.
 
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -26,8 +26,10 @@ rm -rf demo-output
 mkdir demo-output
 # Debian's ParaView draws through GLX only: Xvfb is its display.
 xvfb-run -a -s "-screen 0 1600x1000x24" pvpython Scripts/demo.py "$PWD/$plugin" demo-output
+echo
+xvfb-run -a -s "-screen 0 1600x1000x24" pvpython Scripts/crash.py "$PWD/$plugin" demo-output
 
-for file in plate.json plate_hole.png plate_hole_{100,75,50,25,9.4}.png; do
+for file in plate.json plate_hole.png plate_hole_{100,75,50,25,9.4}.png crash.{png,ogv}; do
   if [ ! -s "demo-output/$file" ]; then
     echo "demo: demo-output/$file is missing or empty" >&2
     exit 1

@@ -6,12 +6,13 @@ All of them share one camera, one colour map and one range. Needs a display (xvf
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkUnsignedCharArray
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints, vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (
-    vtkActor, vtkActor2D, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextMapper)
+    vtkActor, vtkActor2D, vtkPolyDataMapper, vtkPolyDataMapper2D, vtkRenderer, vtkRenderWindow,
+    vtkTextMapper)
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the OpenGL back end)
 
@@ -24,18 +25,22 @@ VIRIDIS = ((0.267, 0.005, 0.329), (0.279, 0.175, 0.483), (0.230, 0.322, 0.546),
            (0.369, 0.789, 0.383), (0.678, 0.864, 0.190), (0.993, 0.906, 0.144))
 
 
+# From nearly white, on which thin edges are seen, to dark red
+HEAT = ((0.96, 0.96, 0.93), (0.99, 0.93, 0.70), (1.00, 0.82, 0.42), (0.99, 0.66, 0.28),
+        (0.97, 0.47, 0.20), (0.89, 0.27, 0.16), (0.73, 0.12, 0.15), (0.50, 0.03, 0.15))
+
 BANDS = 20
 
 
-def colour_map(low, high):
+def colour_map(low, high, colours=VIRIDIS):
     """Bands, as on a contour plot: their outlines show small differences that a smooth map hides."""
     table = vtkLookupTable()
     table.SetNumberOfTableValues(BANDS)
     table.SetTableRange(low, high)
     for i in range(BANDS):
-        at = i / (BANDS - 1) * (len(VIRIDIS) - 1)
-        k = min(int(at), len(VIRIDIS) - 2)
-        rgb = [a + (b - a) * (at - k) for a, b in zip(VIRIDIS[k], VIRIDIS[k + 1])]
+        at = i / (BANDS - 1) * (len(colours) - 1)
+        k = min(int(at), len(colours) - 2)
+        rgb = [a + (b - a) * (at - k) for a, b in zip(colours[k], colours[k + 1])]
         table.SetTableValue(i, *rgb, 1.0)
     return table
 
@@ -107,6 +112,58 @@ class Sheet:
         camera.SetParallelScale(max((box[3] - box[2]), (box[1] - box[0]) * place[3] / place[2]) * 0.505)
         renderer.ResetCameraClippingRange()
 
+    def solid(self, mesh, look_from, up, height, centre, place, array, colours):
+        """A mesh in space with its edges, the sides of its quads and triangles, and an array in colours.
+        look_from: direction; height of what the place shows, in the mesh's unit, and its centre."""
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputData(mesh)
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray(array)
+        mapper.SetLookupTable(colours)
+        mapper.UseLookupTableScalarRangeOn()
+        mapper.InterpolateScalarsBeforeMappingOn()
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        look = actor.GetProperty()
+        look.SetInterpolationToFlat()
+        look.SetAmbient(0.4)
+        look.SetDiffuse(0.65)
+        look.EdgeVisibilityOn()
+        look.SetEdgeColor(0.25, 0.28, 0.33)
+        look.SetLineWidth(0.5 * FINE)
+        renderer = self.renderer(*place)
+        renderer.AddActor(actor)
+        camera = renderer.GetActiveCamera()
+        camera.ParallelProjectionOn()
+        camera.SetFocalPoint(*centre)
+        camera.SetPosition(*(c + height * d for c, d in zip(centre, look_from)))
+        camera.SetViewUp(*up)
+        camera.SetParallelScale(height / 2)
+        renderer.ResetCameraClippingRange()
+
+    def slider(self, text, fraction, x, y, width):
+        """A slider that stands at a fraction of its width, with words above it."""
+        self.words(text, x, y + 16, 16)
+        for left, right, thickness, colour in (
+                (x, x + width, 4, (0.8, 0.82, 0.85)),
+                (x, x + fraction * width, 4, (0.13, 0.57, 0.55)),
+                (x + fraction * width - 5, x + fraction * width + 5, 16, INK)):
+            points = vtkPoints()
+            for corner in ((left, y - thickness / 2), (right, y - thickness / 2),
+                           (right, y + thickness / 2), (left, y + thickness / 2)):
+                points.InsertNextPoint(FINE * corner[0], FINE * corner[1], 0)
+            face = vtkCellArray()
+            face.InsertNextCell(4, (0, 1, 2, 3))
+            bar = vtkPolyData()
+            bar.SetPoints(points)
+            bar.SetPolys(face)
+            mapper = vtkPolyDataMapper2D()
+            mapper.SetInputData(bar)
+            actor = vtkActor2D()
+            actor.SetMapper(mapper)
+            actor.GetProperty().SetColor(*colour)
+            self.paper.AddActor2D(actor)
+
     def words(self, text, x, y, size, bold=False, centred=False, grey=False):
         mapper = vtkTextMapper()
         mapper.SetInput(text)
@@ -122,12 +179,12 @@ class Sheet:
         actor.SetPosition(FINE * x, FINE * y)
         self.paper.AddActor2D(actor)
 
-    def scalar_bar(self, colours, title, place, size):
+    def scalar_bar(self, colours, title, place, size, digits=0):
         bar = vtkScalarBarActor()
         bar.SetLookupTable(colours)
         bar.SetTitle(title)
         bar.SetNumberOfLabels(6)
-        bar.SetLabelFormat("%.0f")
+        bar.SetLabelFormat(f"%.{digits}f")
         bar.UnconstrainedFontSizeOn()
         bar.SetMaximumWidthInPixels(10000)
         bar.SetMaximumHeightInPixels(10000)
@@ -147,7 +204,8 @@ class Sheet:
         bar.GetPosition2Coordinate().SetValue(width, height)
         self.paper.AddActor2D(bar)
 
-    def write(self, path):
+    def image(self):
+        """The sheet as vtkImageData of RGB."""
         self.window.Render()
         width, height = self.size
         grabbed = vtkUnsignedCharArray()
@@ -158,10 +216,13 @@ class Sheet:
         image = vtkImageData()
         image.SetDimensions(width, height, 1)
         image.GetPointData().SetScalars(numpy_to_vtk(pixels.reshape(-1, 3), deep=1))
+        return image
+
+    def write(self, path):
         writer = vtkPNGWriter()
         writer.SetFileName(path)
         writer.SetCompressionLevel(6)
-        writer.SetInputData(image)
+        writer.SetInputData(self.image())
         writer.Write()
         if writer.GetErrorCode():
             raise OSError("cannot write " + path)
