@@ -9,7 +9,12 @@ import tempfile
 
 import numpy as np
 import pytest
-from undecimate.vtkUndecimateFilters import vtkHashQueueDecimation, vtkUndecimation
+from undecimate.vtkUndecimateFilters import (
+    vtkHashQueueDecimation,
+    vtkProgressiveMeshDecimation,
+    vtkTriQuadDecimation,
+    vtkUndecimation,
+)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
@@ -240,9 +245,22 @@ def test_blocks_of_a_composite_come_back_each():
     assert decimation.GetNumberOfInputNodes() == undecimation.GetNumberOfNodes()
 
 
+def test_the_decimations_share_a_superclass():
+    for cls in vtkHashQueueDecimation, vtkTriQuadDecimation:
+        assert issubclass(cls, vtkProgressiveMeshDecimation)
+        decimation = cls()
+        decimation.AddScalars("stress")
+        decimation.SetTargetReduction(0.5)
+        assert decimation.GetScalars(0) == "stress" and decimation.GetTargetReduction() == 0.5
+    with pytest.raises(TypeError):
+        vtkProgressiveMeshDecimation()
+
+
 def test_the_wrapped_classes_are_documented():
     for cls, words in (
         (vtkHashQueueDecimation, ["Krivograd", "Undecimation.", "vtkOriginalPointIds"]),
+        (vtkTriQuadDecimation, ["Wundrak", "Undecimation.", "vtkOriginalPointIds"]),
+        (vtkProgressiveMeshDecimation, ["superclass", "Undecimation.", "vtkOriginalPointIds"]),
         (vtkUndecimation, ["bit for bit", "Level"]),
     ):
         for word in words:
