@@ -441,8 +441,8 @@ double valueError(const Decimated& d)
 // A nodal array steers: its error at the nodes is claimed as well, times the weight.
 TEST(PlateWithStressTest, ClaimedErrorIsTheStressErrorToo)
 {
-  constexpr double kClaimTooSmall = 1.1;                                      // measured: 1.00
-  constexpr std::array<double, 4> kBounds = { 2.6e-4, 8e-4, 2.9e-3, 6.1e-3 }; // of the range
+  constexpr double kClaimTooSmall = 1.1;                                    // measured: 1.00
+  constexpr std::array<double, 4> kBounds = { 4e-4, 1.2e-3, 4e-3, 7.8e-3 }; // of the range
   Decimated d;
   d.mesh = readMesh("plate_hole", dataFile("plate_hole.vtp"), "von_mises");
   undecimate::HashQueueDecimationOptions options;
