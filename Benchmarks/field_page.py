@@ -289,7 +289,7 @@ results' medians and of their 95 % quantiles. The originals have {np.median([m["
         text.append(f"""
 ## Nodal arrays
 
-Decimation steered by an array, each at its default or documented weight: ours `ScalarWeight` 0.1, vtkQuadricDecimation
+Decimation steered by an array, each at its default or documented weight: ours `ScalarWeight` 0.02, vtkQuadricDecimation
 `ScalarsWeight` 0.1, meshoptimizer 0.5 of the range. Largest error / mean error of the array in % of its range, interpolated at the
 closest point / Hausdorff distance in % of the diagonal. Ratios are to the rival that is best in that error.
 
