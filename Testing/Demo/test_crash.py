@@ -2,28 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scripts/crash.py in pvpython: what it says, its picture, its film."""
 
-import os
-import pathlib
 import re
-import subprocess
 
 import numpy as np
 import pytest
 from PIL import Image
 
-ROOT = pathlib.Path(__file__).parents[2]
+from running import run_script
 
 
 @pytest.fixture(scope="module")
 def crash(tmp_path_factory):
     folder = tmp_path_factory.mktemp("crash")
-    result = subprocess.run(
-        [os.environ["DEMO_XVFB_RUN"], "-a", "-s", "-screen 0 1600x1000x24", os.environ["DEMO_PVPYTHON"],
-         ROOT / "Scripts" / "crash.py", os.environ["DEMO_PLUGIN"], folder],
-        capture_output=True, text=True, timeout=280)
-    assert result.returncode == 0, result.stdout + result.stderr
-    assert "ERR|" not in result.stderr, result.stderr
-    return folder, result.stdout
+    return folder, run_script("crash.py", folder)
 
 
 def test_words(crash):

@@ -3,29 +3,21 @@
 """Scripts/demo.py in pvpython: its numbers, its files, its pictures."""
 
 import json
-import os
-import pathlib
 import struct
-import subprocess
 
 import numpy as np
 import pytest
 from PIL import Image
 
-ROOT = pathlib.Path(__file__).parents[2]
+from running import run_script
+
 PERCENT = [100, 75, 50, 25, 9.4]
 
 
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory):
     folder = tmp_path_factory.mktemp("demo")
-    result = subprocess.run(
-        [os.environ["DEMO_XVFB_RUN"], "-a", "-s", "-screen 0 1600x1000x24", os.environ["DEMO_PVPYTHON"],
-         ROOT / "Scripts" / "demo.py", os.environ["DEMO_PLUGIN"], folder],
-        capture_output=True, text=True, timeout=240)
-    assert result.returncode == 0, result.stdout + result.stderr
-    assert "ERR|" not in result.stderr, result.stderr
-    return folder, result.stdout
+    return folder, run_script("demo.py", folder)
 
 
 def test_numbers(demo):
