@@ -122,7 +122,7 @@ def draw_film(path, sliders, view):
     """Time goes forth and back, the share of the nodes falls and rises, each at its own pace."""
     centre, width, height = view.frame([sliders.at(at, 100) for at in sliders.times])
     scale = 420 / height
-    wide, high = 2 * round(scale * width / 2) + 180, 440
+    wide, high = 2 * round(scale * width / 2) + 280, 440
     writer = vtkOggTheoraWriter()
     writer.SetFileName(path)
     writer.SetRate(RATE)
