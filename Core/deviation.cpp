@@ -3,6 +3,7 @@
 
 #include "deviation.h"
 
+#include "diagonal.h"
 #include "fold_rule.h"
 #include "original_surface.h"
 #include "triangle_distance.h"
@@ -69,28 +70,6 @@ double squaredDistanceToSegment(const Vector& p, const Vector& a, const Vector& 
   const double t = square > 0.0 ? std::clamp(dot(p - a, ab) / square, 0.0, 1.0) : 0.0;
   const Vector d = p - (a + t * ab);
   return dot(d, d);
-}
-
-/// The box of all finite points that a triangle uses.
-double diagonalOf(const TriangleTopology& topology)
-{
-  Vector low{ HUGE_VAL, HUGE_VAL, HUGE_VAL };
-  Vector high{ -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
-  for (Index t = 0; t < topology.triangleCount(); ++t)
-  {
-    for (const Index node : topology.triangle(t).nodes)
-    {
-      const Vector& p = topology.node(node).position;
-      if (isFinite(p))
-      {
-        low = { std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z) };
-        high = { std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z) };
-      }
-    }
-  }
-  const Vector size = high - low;
-  const double diagonal = std::sqrt(dot(size, size));
-  return std::isfinite(diagonal) ? diagonal : 0.0;
 }
 
 /// A unit vector in 64 bits, for MeshNode::sum, and back, of any length.

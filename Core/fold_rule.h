@@ -15,6 +15,7 @@
 #include "triangle_topology.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace undecimate
@@ -140,6 +141,63 @@ private:
 
   Vector direction_{ 0.0, 0.0, 0.0 };
   bool known_ = false;
+};
+
+/// The ring of a hole and the triangles that filled it, seen from the removed node.
+struct HoleRing
+{
+  std::array<Vector, kMaximumPatchCells + 1> nodes;
+  std::array<Vector, kMaximumPatchCells> oldNormals; ///< of the removed triangles, twice their area
+  Vector normal{ 0.0, 0.0, 0.0 };                    ///< their sum
+
+  HoleRing(const TriangleTopology& topology, const Hole& hole)
+  {
+    const Vector center = topology.node(hole.node).position;
+    for (int i = 0; i < hole.size; ++i)
+    {
+      this->nodes[i] = topology.node(hole.ring[i]).position - center;
+    }
+    for (int i = 0; i < hole.triangleCount; ++i)
+    {
+      this->oldNormals[i] = cross(this->nodes[i], this->nodes[i + 1 == hole.size ? 0 : i + 1]);
+      this->normal = this->normal + this->oldNormals[i];
+    }
+  }
+
+  /// Whether no triangle of a filling folds the surface.
+  bool isUnfolded(const Hole& hole, const HoleTriangulation& filling,
+    const HeightFieldDirection& heightField) const
+  {
+    for (int t = 0; t < filling.count; ++t)
+    {
+      const auto& corners = filling.triangles[t];
+      const FilledTriangle triangle(
+        this->nodes[corners[0]], this->nodes[corners[1]], this->nodes[corners[2]]);
+      if (triangle.degenerate() || !heightField.allows(triangle))
+      {
+        return false;
+      }
+      bool onRing = false;
+      for (int c = 0; c < 3; ++c)
+      {
+        const int from = corners[c];
+        const int to = corners[nextCorner(c)];
+        if (from < hole.triangleCount && to == (from + 1 == hole.size ? 0 : from + 1))
+        {
+          onRing = true;
+          if (!triangle.follows(this->oldNormals[from]))
+          {
+            return false;
+          }
+        }
+      }
+      if (!onRing && !triangle.follows(this->normal))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
 };
 
 } // namespace undecimate

@@ -85,53 +85,6 @@ void MeanEdgeCriterion::addEdge(Index a, Index b)
   nodeB.sum += sum;
 }
 
-namespace
-{
-
-struct Ring
-{
-  std::array<Vector, kMaximumPatchCells + 1> nodes;  // seen from the removed node
-  std::array<Vector, kMaximumPatchCells> oldNormals; // of the removed triangles, twice their area
-  Vector normal{ 0.0, 0.0, 0.0 };                    // their sum
-};
-
-// The plane of a hole drifts from step to step, so what is right in the plane may still be a fold.
-bool isUnfolded(const Hole& hole, const Ring& ring, const HoleTriangulation& filling,
-  const HeightFieldDirection& heightField)
-{
-  for (int t = 0; t < filling.count; ++t)
-  {
-    const auto& corners = filling.triangles[t];
-    const FilledTriangle triangle(
-      ring.nodes[corners[0]], ring.nodes[corners[1]], ring.nodes[corners[2]]);
-    if (triangle.degenerate() || !heightField.allows(triangle))
-    {
-      return false;
-    }
-    bool onRing = false;
-    for (int c = 0; c < 3; ++c)
-    {
-      const int from = corners[c];
-      const int to = corners[nextCorner(c)];
-      if (from < hole.triangleCount && to == (from + 1 == hole.size ? 0 : from + 1))
-      {
-        onRing = true;
-        if (!triangle.follows(ring.oldNormals[from]))
-        {
-          return false;
-        }
-      }
-    }
-    if (!onRing && !triangle.follows(ring.normal))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-} // namespace
-
 bool MeanEdgeCriterion::retriangulate(
   Index node, Hole& hole, HoleTriangulation& filling, double& cost)
 {
@@ -145,17 +98,7 @@ bool MeanEdgeCriterion::retriangulate(
   {
     return true;
   }
-  Ring ring;
-  const Vector center = this->topology_.node(node).position;
-  for (int i = 0; i < hole.size; ++i)
-  {
-    ring.nodes[i] = this->topology_.node(hole.ring[i]).position - center;
-  }
-  for (int i = 0; i < hole.triangleCount; ++i)
-  {
-    ring.oldNormals[i] = cross(ring.nodes[i], ring.nodes[i + 1 == hole.size ? 0 : i + 1]);
-    ring.normal = ring.normal + ring.oldNormals[i];
-  }
+  const HoleRing ring(this->topology_, hole);
   EarCutting ears(ring.nodes.data(), hole.size, ring.normal);
   // In the plane of the mean normal no old triangle may lie upside down, else the hole is not the
   // polygon that the plane shows.
@@ -171,7 +114,7 @@ bool MeanEdgeCriterion::retriangulate(
       return closing || !this->topology_.mayHaveEdge(hole.ring[i], hole.ring[j]);
     },
     filling);
-  return cut && isUnfolded(hole, ring, filling, this->heightField_);
+  return cut && ring.isUnfolded(hole, filling, this->heightField_);
 }
 
 void MeanEdgeCriterion::removed(const Hole& hole, const HoleTriangulation& filling)
