@@ -8,7 +8,7 @@
 /// reached by walking the record, and each is written as a mesh file of its own.
 ///
 ///   decimate_cli MESH --targets 1000,500,100 [--out PREFIX] [--reps N] [--time-each]
-///     [--criterion deviation|scalar|angle] [--scalar-weight W] [--spacing log|exp]
+///     [--criterion deviation|scalar|angle|quadric] [--scalar-weight W] [--spacing log|exp]
 ///     [--interval-nodes K] [--preserve-boundary] [--maximum-error E]
 ///
 /// A mesh file is six int64 (nodes, triangles, bytes of a coordinate, components of the nodal array
@@ -185,6 +185,7 @@ int main(int argc, char** argv)
     {
       options.criterion = value == "scalar" ? undecimate::Criterion::ScalarDifference
         : value == "angle"                  ? undecimate::Criterion::AngleToXYPlane
+        : value == "quadric"                ? undecimate::Criterion::Quadric
                                             : undecimate::Criterion::Deviation;
     }
     else if (word == "--scalar-weight")

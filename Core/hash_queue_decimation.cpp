@@ -8,6 +8,7 @@
 #include "deviation.h"
 #include "guarded.h"
 #include "mean_edge_criterion.h"
+#include "quadric_criterion.h"
 #include "triangle_topology.h"
 
 #include <algorithm>
@@ -186,7 +187,7 @@ public:
       if constexpr (CriterionType::kLazy)
       {
         error = this->criterion_.confirm(this->hole_, this->filling_, cost);
-        if (mustWait())
+        if (cost == HUGE_VAL || mustWait()) // infinite: cannot go now
         {
           continue;
         }
@@ -223,6 +224,8 @@ private:
 
   // Steps at the boundary for which the record sets room aside; it grows if there are more.
   static constexpr Index kBoundarySteps = 1000;
+
+  static constexpr bool kIsQuadric = std::is_same_v<CriterionType, QuadricCriterion>;
 
   // Share of the progress that the first evaluation gets.
   static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
@@ -281,6 +284,10 @@ private:
     if (next[4] != kNone)
     {
       this->topology_.prefetchNode(next[4]);
+      if constexpr (kIsQuadric)
+      {
+        this->criterion_.prefetch(next[4]);
+      }
     }
     if (next[3] != kNone)
     {
@@ -345,6 +352,19 @@ private:
       if (this->topology_.node(node).kept)
       {
         continue;
+      }
+      if constexpr (kIsQuadric)
+      {
+        double expected = 0.0;
+        if (this->criterion_.expect(node, this->hole_, expected))
+        {
+          queue.insert(node, intervals.of(expected));
+          continue;
+        }
+        if (queue.contains(node))
+        {
+          continue;
+        }
       }
       if (CriterionType::kLazy)
       {
@@ -517,7 +537,8 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
     options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr;
   const Status status = options.criterion == Criterion::Deviation
     ? decimateBy(DeviationCriterion(mesh, topology, options.arrays, options.scalarWeight))
-    : decimateBy(MeanEdgeCriterion(topology, array));
+    : options.criterion == Criterion::Quadric ? decimateBy(QuadricCriterion(topology))
+                                              : decimateBy(MeanEdgeCriterion(topology, array));
   return { status, status == Status::Cancelled ? "Cancelled." : "" };
 }
 

@@ -280,7 +280,9 @@ INSTANTIATE_TEST_SUITE_P(Settings, EverySetting,
     Setting{ Criterion::ScalarDifference, IntervalSpacing::Logarithmic },
     Setting{ Criterion::ScalarDifference, IntervalSpacing::Exponential },
     Setting{ Criterion::AngleToXYPlane, IntervalSpacing::Logarithmic },
-    Setting{ Criterion::AngleToXYPlane, IntervalSpacing::Exponential }));
+    Setting{ Criterion::AngleToXYPlane, IntervalSpacing::Exponential },
+    Setting{ Criterion::Quadric, IntervalSpacing::Logarithmic },
+    Setting{ Criterion::Quadric, IntervalSpacing::Exponential }));
 
 TEST(HashQueueDecimation, AnyIntervalNodes)
 {
@@ -290,7 +292,8 @@ TEST(HashQueueDecimation, AnyIntervalNodes)
   HashQueueDecimationOptions options;
   options.intervalSpacing = IntervalSpacing::Exponential;
   options.arrays = { arrayOf(values) };
-  for (const Criterion criterion : { Criterion::Deviation, Criterion::ScalarDifference })
+  for (const Criterion criterion :
+    { Criterion::Deviation, Criterion::ScalarDifference, Criterion::Quadric })
   {
     options.criterion = criterion;
     for (const double k : { 1e-9, 0.01, 1.0, 4.0, 1e3, 1e30, kInfinity })
@@ -385,7 +388,8 @@ TEST(HashQueueDecimation, TooLargeMeshesAreRefusedBeforeTheyAreRead)
 
 TEST(HashQueueDecimation, EmptyMesh)
 {
-  for (const Criterion criterion : { Criterion::Deviation, Criterion::AngleToXYPlane })
+  for (const Criterion criterion :
+    { Criterion::Deviation, Criterion::AngleToXYPlane, Criterion::Quadric })
   {
     for (const auto spacing : { IntervalSpacing::Logarithmic, IntervalSpacing::Exponential })
     {
@@ -413,8 +417,8 @@ TEST(HashQueueDecimation, DefaultsHaveNoMaximumError)
   const Mesh mesh = testing::hills(24, 21);
   const std::vector<float> values =
     valuesOn(mesh, [](double x, double y, double) { return std::sin(0.3 * x) + 0.1 * y; });
-  for (const Criterion criterion :
-    { Criterion::Deviation, Criterion::ScalarDifference, Criterion::AngleToXYPlane })
+  for (const Criterion criterion : { Criterion::Deviation, Criterion::ScalarDifference,
+         Criterion::AngleToXYPlane, Criterion::Quadric })
   {
     HashQueueDecimationOptions options;
     options.criterion = criterion;
@@ -477,8 +481,8 @@ TEST(HashQueueDecimation, StuckMeshesStayAsTheyAre)
 {
   for (const Stuck& stuck : stuckMeshes())
   {
-    for (const Criterion criterion :
-      { Criterion::Deviation, Criterion::ScalarDifference, Criterion::AngleToXYPlane })
+    for (const Criterion criterion : { Criterion::Deviation, Criterion::ScalarDifference,
+           Criterion::AngleToXYPlane, Criterion::Quadric })
     {
       const std::vector<float> values =
         valuesOn(stuck.mesh, [](double x, double y, double z) { return x + y + z; });
@@ -534,7 +538,8 @@ TEST(HashQueueDecimation, ReasonsForKeptNodesAreCounted)
 
 TEST(HashQueueDecimation, StripsGoToOneTriangle)
 {
-  for (const Criterion criterion : { Criterion::Deviation, Criterion::AngleToXYPlane })
+  for (const Criterion criterion :
+    { Criterion::Deviation, Criterion::AngleToXYPlane, Criterion::Quadric })
   {
     HashQueueDecimationOptions options;
     options.criterion = criterion;
@@ -605,7 +610,8 @@ TEST(HashQueueDecimation, OddTrianglesStayWithTheirNodes)
   for (std::size_t m = 0; m < meshes.size(); ++m)
   {
     const Mesh& mesh = meshes[m];
-    for (const Criterion criterion : { Criterion::Deviation, Criterion::AngleToXYPlane })
+    for (const Criterion criterion :
+      { Criterion::Deviation, Criterion::AngleToXYPlane, Criterion::Quadric })
     {
       SCOPED_TRACE("mesh " + std::to_string(m));
       HashQueueDecimationOptions options;
@@ -633,7 +639,8 @@ TEST(HashQueueDecimation, NonFiniteCoordinatesStay)
 {
   for (const double odd : { kNaN, kInfinity, -kInfinity, 1e308 })
   {
-    for (const Criterion criterion : { Criterion::Deviation, Criterion::AngleToXYPlane })
+    for (const Criterion criterion :
+      { Criterion::Deviation, Criterion::AngleToXYPlane, Criterion::Quadric })
     {
       Mesh mesh = testing::hills(14, 14);
       const Index node = 5 * 14 + 6;
@@ -661,7 +668,8 @@ TEST(HashQueueDecimation, AllCoordinatesNonFinite)
 {
   Mesh mesh = testing::flatGrid(4, 4);
   std::fill(mesh.points.begin(), mesh.points.end(), kNaN);
-  for (const Criterion criterion : { Criterion::Deviation, Criterion::AngleToXYPlane })
+  for (const Criterion criterion :
+    { Criterion::Deviation, Criterion::AngleToXYPlane, Criterion::Quadric })
   {
     HashQueueDecimationOptions options;
     options.criterion = criterion;
@@ -680,7 +688,8 @@ TEST(HashQueueDecimation, ZeroAreaPatch)
       mesh.points[3 * (5 * 12 + x) + c] = mesh.points[3 * (6 * 12 + x) + c];
     }
   }
-  for (const Criterion criterion : { Criterion::Deviation, Criterion::AngleToXYPlane })
+  for (const Criterion criterion :
+    { Criterion::Deviation, Criterion::AngleToXYPlane, Criterion::Quadric })
   {
     HashQueueDecimationOptions options;
     options.criterion = criterion;
@@ -1240,6 +1249,20 @@ TEST_F(TwelveNodes, AngleToXYPlane)
 TEST_F(TwelveNodes, Deviation)
 {
   EXPECT_EQ(trace(Criterion::Deviation), (std::vector<Index>{ 2, 6, 1, 10, 4, 7, 9, 5, 0 }));
+}
+
+// By hand: node 2 may go to 1 or 3. Node 3 lies in all planes but that of 2-7-6, whose normal is
+// (1, -1, 8) / sqrt(66): a distance of 1 / sqrt(66). Weights: a third of the areas, which are
+// sqrt(65) / 16 (1-2-6), 1/2 (2-3-7) and sqrt(66) / 16 (2-7-6), and 1 for each boundary edge.
+TEST_F(TwelveNodes, Quadric)
+{
+  EXPECT_EQ(trace(Criterion::Quadric), (std::vector<Index>{ 2, 7, 1, 10, 4, 9, 6, 5, 11 }));
+  const double tilted = std::sqrt(66.0) / 48.0;
+  const double weight = std::sqrt(65.0) / 48.0 + 1.0 / 6.0 + tilted + 2.0;
+  const double diagonal = std::sqrt(9.0 + 4.0 + 9.0 / 64.0);
+  options.targetNodes = 11;
+  EXPECT_NEAR(
+    Decimated(mesh, options).result.error, std::sqrt(tilted / 66.0 / weight) / diagonal, 1e-8);
 }
 
 } // namespace

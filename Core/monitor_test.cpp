@@ -261,7 +261,8 @@ TEST_P(MonitoredDecimation, WorksAgainAfterReset)
 }
 
 INSTANTIATE_TEST_SUITE_P(Criteria, MonitoredDecimation,
-  ::testing::Values(Criterion::Deviation, Criterion::ScalarDifference, Criterion::AngleToXYPlane));
+  ::testing::Values(Criterion::Deviation, Criterion::ScalarDifference, Criterion::AngleToXYPlane,
+    Criterion::Quadric));
 
 } // namespace
 } // namespace undecimate

@@ -207,7 +207,7 @@ constexpr Kind kSieve{ "Sieve", randomSieve };
 
 std::string nameOf(const ::testing::TestParamInfo<Case>& info)
 {
-  const char* const criteria[] = { "Deviation", "ScalarDifference", "AngleToXYPlane" };
+  const char* const criteria[] = { "Deviation", "ScalarDifference", "AngleToXYPlane", "Quadric" };
   return std::string(info.param.kind.name) + criteria[static_cast<int>(info.param.criterion)];
 }
 
@@ -223,7 +223,10 @@ INSTANTIATE_TEST_SUITE_P(Kinds, RandomMeshes,
     Case{ kSieve, Criterion::ScalarDifference, kNever },
     Case{ kPlane, Criterion::AngleToXYPlane, 0.0 }, Case{ kField, Criterion::AngleToXYPlane, 0.1 },
     Case{ kTorus, Criterion::AngleToXYPlane, kNever },
-    Case{ kSieve, Criterion::AngleToXYPlane, kNever }),
+    Case{ kSieve, Criterion::AngleToXYPlane, kNever }, Case{ kPlane, Criterion::Quadric, 0.0 },
+    Case{ kField, Criterion::Quadric, 0.1 }, Case{ kTorus, Criterion::Quadric, kNever },
+    Case{ kDisc, Criterion::Quadric, kNever }, Case{ kCube, Criterion::Quadric, kNever },
+    Case{ kSieve, Criterion::Quadric, kNever }),
   nameOf);
 
 } // namespace

@@ -206,6 +206,7 @@ int main(int argc, char* argv[])
 {
   const Grid grid(argc > 1 ? std::atoi(argv[1]) : 200);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, false, 215);
+  measure(grid, "Quadric", Criterion::Quadric, false, 245);
   measure(grid, "Deviation", Criterion::Deviation, false, 245);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, true, 235);
   measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 3, 420);
