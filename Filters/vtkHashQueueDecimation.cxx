@@ -38,6 +38,7 @@ constexpr bool same(Filter a, Core b)
 static_assert(same(vtkHashQueueDecimation::DEVIATION, Criterion::Deviation) &&
     same(vtkHashQueueDecimation::SCALAR_DIFFERENCE, Criterion::ScalarDifference) &&
     same(vtkHashQueueDecimation::ANGLE_TO_XY_PLANE, Criterion::AngleToXYPlane) &&
+    same(vtkHashQueueDecimation::QUADRIC, Criterion::Quadric) &&
     same(vtkHashQueueDecimation::LOGARITHMIC, IntervalSpacing::Logarithmic) &&
     same(vtkHashQueueDecimation::EXPONENTIAL, IntervalSpacing::Exponential),
   "");

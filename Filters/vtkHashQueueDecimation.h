@@ -16,7 +16,8 @@
  * node is the one whose removal costs least; a queue of intervals finds it in constant time, and
  * within an interval the node that waits longest goes first, which spreads the removals. The cost
  * is the Criterion: the distance between the surfaces and the change of nodal results (Deviation),
- * or one of the two criteria of the paper. A removal that would flip a triangle, or make an edge or
+ * the distance to planes of the original triangles (Quadric), or one of the two criteria of the
+ * paper. A removal that would flip a triangle, or make an edge or
  * a triangle that exists, is not done. So at every level each edge has at most two triangles if the
  * input's has.
  *
@@ -81,7 +82,8 @@ public:
   {
     DEVIATION = 0,
     SCALAR_DIFFERENCE = 1,
-    ANGLE_TO_XY_PLANE = 2
+    ANGLE_TO_XY_PLANE = 2,
+    QUADRIC = 3
   };
 
   ///@{
@@ -91,13 +93,17 @@ public:
    * Scalars times ScalarWeight, whichever is larger. SCALAR_DIFFERENCE: the mean difference of the
    * node's value of the first array in Scalars, or of the active point scalars when none is named,
    * to its neighbours' as a fraction of the array's range. ANGLE_TO_XY_PLANE: the mean
-   * angle of the node's edges to the plane z = 0, in degrees. Default is DEVIATION.
+   * angle of the node's edges to the plane z = 0, in degrees. QUADRIC: the root of the mean squared
+   * distance of the node's best neighbour to the planes of the original triangles that the node
+   * stands for, as a fraction of the diagonal; fast, but a mean: it does not bound the distance.
+   * Default is DEVIATION.
    */
-  vtkSetClampMacro(Criterion, int, DEVIATION, ANGLE_TO_XY_PLANE);
+  vtkSetClampMacro(Criterion, int, DEVIATION, QUADRIC);
   vtkGetMacro(Criterion, int);
   void SetCriterionToDeviation() { this->SetCriterion(DEVIATION); }
   void SetCriterionToScalarDifference() { this->SetCriterion(SCALAR_DIFFERENCE); }
   void SetCriterionToAngleToXYPlane() { this->SetCriterion(ANGLE_TO_XY_PLANE); }
+  void SetCriterionToQuadric() { this->SetCriterion(QUADRIC); }
   ///@}
 
   enum IntervalSpacingType

@@ -259,7 +259,7 @@ TEST(Decimation, WarnsWhenFewerNodesGoThanAsked)
 TEST(Decimation, AllCriteriaAndSpacingsGiveManifoldsAndRoundTrips)
 {
   vtkSmartPointer<vtkPolyData> mesh = makeGrid();
-  for (int criterion : { 0, 1, 2 })
+  for (int criterion : { 0, 1, 2, 3 })
   {
     for (int spacing : { 0, 1 })
     {
@@ -414,7 +414,7 @@ TEST(Decimation, NamesCellsThatAreNotTriangles)
 {
   vtkSmartPointer<vtkPolyData> mesh =
     makeMesh({ 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0, 3, 0.5, 0 },
-      { { 0, 1, 2, 3 }, { 1, 4, 6, 5, 2 }, { 0, 1 }, { 0, 1, 2 } });
+      { { 0, 1, 2, 3 }, { 1, 4, 6, 5, 2 }, { 0, 1 }, { 0, 1, 2, 3 } });
   const vtkIdType strip[] = { 0, 1, 3, 2 };
   vtkNew<vtkCellArray> strips;
   strips->InsertNextCell(4, strip);
@@ -654,15 +654,15 @@ TEST(Decimation, PointsWithoutTrianglesPassThrough)
 TEST(Decimation, RefusesCellsWithPointsThatDoNotExist)
 {
   Decimation filter;
-  expectError(filter, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2 }, { 0, 1, 7 } }),
+  expectError(filter, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2, 3 }, { 0, 1, 7 } }),
     { "Face 1", "point 7", "3 points" });
   Decimation negative;
   expectError(
     negative, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, -1, 2 } }), { "Face 0", "point -1" });
   Decimation pointless;
-  expectError(pointless, makeMesh({}, { { 0, 1, 2 } }), { "Face 0", "0 points" });
+  expectError(pointless, makeMesh({}, { { 0, 1, 2, 3 } }), { "Face 0", "0 points" });
   Decimation line;
-  vtkSmartPointer<vtkPolyData> mesh = makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2 } });
+  vtkSmartPointer<vtkPolyData> mesh = makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2, 3 } });
   const vtkIdType ids[] = { 0, 3 };
   vtkNew<vtkCellArray> lines;
   lines->InsertNextCell(2, ids);
@@ -720,7 +720,7 @@ TEST(Decimation, KeepsNodesThatAreNotNumbers)
     scalar->InsertNextValue(i == 99 ? static_cast<float>(kNaN) : static_cast<float>(i % 5));
   }
   mesh->GetPointData()->SetScalars(scalar);
-  for (int criterion : { 0, 1, 2 })
+  for (int criterion : { 0, 1, 2, 3 })
   {
     for (int spacing : { 0, 1 })
     {
@@ -736,7 +736,7 @@ TEST(Decimation, KeepsNodesThatAreNotNumbers)
       const std::set<vtkIdType> left = originalIds(coarse);
       EXPECT_EQ(left.count(30), 1u);
       EXPECT_EQ(left.count(70), 1u);
-      if (criterion != vtkHashQueueDecimation::ANGLE_TO_XY_PLANE)
+      if (criterion < vtkHashQueueDecimation::ANGLE_TO_XY_PLANE)
       {
         EXPECT_EQ(left.count(99), 1u) << "its scalar is not a number";
       }
@@ -1015,7 +1015,7 @@ TEST(Decimation, ClampsItsProperties)
   filter->SetMaximumError(-1.0);
   EXPECT_EQ(filter->GetMaximumError(), 0.0);
   filter->SetCriterion(99);
-  EXPECT_EQ(filter->GetCriterion(), vtkHashQueueDecimation::ANGLE_TO_XY_PLANE);
+  EXPECT_EQ(filter->GetCriterion(), vtkHashQueueDecimation::QUADRIC);
   filter->SetIntervalNodes(0.0);
   EXPECT_GT(filter->GetIntervalNodes(), 0.0);
   filter->SetScalarWeight(-1.0);
