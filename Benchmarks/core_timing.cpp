@@ -4,9 +4,10 @@
 /// @file core_timing.cpp
 /// @brief CPU time of the core on grids: decimation, undecimation, a change of level.
 ///
-///   core_timing linear MESH TARGET_NODES REPS [deviation]   decimation and undecimation of all
-///   nodes core_timing level MESH TARGET_NODES REPS                a change of level by 1 % against
-///   memcpy
+///   core_timing linear MESH TARGET_NODES REPS [deviation|quadric]
+///     decimation, by Scalar Difference without a word, and undecimation of all nodes
+///   core_timing level MESH TARGET_NODES REPS
+///     a change of level by 1 % against memcpy
 ///
 /// A mesh file is that of decimate_cli.cpp. Prints one JSON object; times are CPU seconds
 /// (medians).
@@ -80,7 +81,7 @@ struct Run
   double decimation = 0.0;
 };
 
-bool decimate(const Mesh& mesh, std::int64_t nodes, bool deviation, Run& run)
+bool decimate(const Mesh& mesh, std::int64_t nodes, undecimate::Criterion criterion, Run& run)
 {
   undecimate::TriangleMeshView view;
   view.pointsDouble = mesh.points.data();
@@ -90,9 +91,9 @@ bool decimate(const Mesh& mesh, std::int64_t nodes, bool deviation, Run& run)
   undecimate::HashQueueDecimationOptions options;
   options.targetReduction = 1.0;
   options.targetNodes = nodes;
-  if (!deviation)
+  options.criterion = criterion;
+  if (criterion == undecimate::Criterion::ScalarDifference)
   {
-    options.criterion = undecimate::Criterion::ScalarDifference;
     undecimate::NodalArrayView array;
     array.values = mesh.values.data();
     array.name = "scalar";
@@ -130,7 +131,7 @@ bool sameMesh(const Mesh& mesh, const undecimate::Undecimation& cursor)
   return true;
 }
 
-int linear(const Mesh& mesh, std::int64_t nodes, int reps, bool deviation)
+int linear(const Mesh& mesh, std::int64_t nodes, int reps, undecimate::Criterion criterion)
 {
   std::vector<double> forth;
   std::vector<double> open;
@@ -140,7 +141,7 @@ int linear(const Mesh& mesh, std::int64_t nodes, int reps, bool deviation)
   std::size_t bytes = 0;
   for (int r = 0; r < reps; ++r)
   {
-    if (!decimate(mesh, nodes, deviation, run))
+    if (!decimate(mesh, nodes, criterion, run))
     {
       return 1;
     }
@@ -183,7 +184,7 @@ int level(const Mesh& mesh, std::int64_t nodes, int reps)
 {
   Run run;
   undecimate::Undecimation cursor;
-  if (!decimate(mesh, nodes, false, run) ||
+  if (!decimate(mesh, nodes, undecimate::Criterion::ScalarDifference, run) ||
     !cursor.open(run.result.record.view(), run.result.baseTriangles.data()))
   {
     return 1;
@@ -257,7 +258,7 @@ int main(int argc, char** argv)
   Mesh mesh;
   if (argc < 5 || !readMesh(argv[2], mesh))
   {
-    std::cerr << "usage: core_timing linear|level MESH TARGET_NODES REPS [deviation]\n";
+    std::cerr << "usage: core_timing linear|level MESH TARGET_NODES REPS [deviation|quadric]\n";
     return 2;
   }
   const std::string mode = argv[1];
@@ -265,7 +266,11 @@ int main(int argc, char** argv)
   const int reps = std::max(1, std::atoi(argv[4]));
   if (mode == "linear")
   {
-    return linear(mesh, nodes, reps, argc > 5 && std::string(argv[5]) == "deviation");
+    const std::string criterion = argc > 5 ? argv[5] : "scalar";
+    return linear(mesh, nodes, reps,
+      criterion == "deviation"   ? undecimate::Criterion::Deviation
+        : criterion == "quadric" ? undecimate::Criterion::Quadric
+                                 : undecimate::Criterion::ScalarDifference);
   }
   return level(mesh, nodes, reps);
 }

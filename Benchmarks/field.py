@@ -230,7 +230,7 @@ def main():
     p = parts.add_parser("collect", parents=[which, cases], help="write all results to results/")
     p.add_argument("--ours", help="of 'ours'")
     p = parts.add_parser("times", parents=[which, runs], help="CPU time and memory, filter against filter")
-    p.add_argument("--criteria", nargs="+", default=["Deviation", "ScalarDifference"], help="of ours")
+    p.add_argument("--criteria", nargs="+", default=["Deviation", "ScalarDifference", "Quadric"], help="of ours")
     p.add_argument("--reps", type=int, default=3, help="runs of which the median counts; over 2 s: one run")
     p.add_argument("--fast-only", action="store_true", help="without the slow rivals")
     p.add_argument("--fresh-ours", action="store_true", help="measure ours again, keep the rivals")

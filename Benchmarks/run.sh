@@ -3,10 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # The benchmarks in one command; prints Markdown. Usage: Benchmarks/run.sh [PART [OPTIONS]]
-#   all          linear, level, decimation and deviation (default); with --results FOLDER also as files
+#   all          linear, level, decimation, limit and deviation (default); with --results FOLDER also as files
 #   linear       table 1 of the paper: CPU time of the core against the number of nodes
 #   level        a change of level by 1 % at 1M nodes against memcpy: core, then the whole filter
 #   decimation   filter against filter at 1M nodes: vtkDecimatePro, vtkQuadricDecimation
+#   fast         Scalar Difference and Quadric against meshoptimizer, Deviation against vtkQuadricDecimation, 1M nodes
+#   limit        bytes a removal against the memory's bandwidth and latency
 #   deviation    Hausdorff distance at equal triangle counts over the data set
 #   field        the same against the whole field of decimators, into Benchmarks/results (the first time: hours)
 #   field-ours   ours alone against the rivals' results that are there (minutes); --against OTHER.json
@@ -15,7 +17,7 @@
 #   test         tests of the error tool and of the comparison
 #   tri_quad     triangles and quads over time: the paper's three tables, and a million nodes (needs CGAL)
 #   build        only build the drivers and the Python environment
-# Options go to the part: see Benchmarks/README.md. Needs g++, cmake and Python 3 with venv; 'level',
+# Options go to the part: see Benchmarks/README.md. Needs g++, cmake and Python 3 with venv; 'level', 'fast',
 # 'decimation' and 'field-times' need the project built in build/ (or --build FOLDER).
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -74,6 +76,11 @@ run() {
     level-core) "$python" "$here/core.py" level --timing "$build/core_timing" "$@" ;;
     level-filter) "$python" "$here/filters.py" level "$@" ;;
     decimation) "$python" "$here/filters.py" decimation "$@" ;;
+    fast)
+      rivals
+      "$python" "$here/fast.py" "$@"
+      ;;
+    limit) "$python" "$here/core.py" limit --timing "$build/core_timing" --memory "$build/memory_limits" "$@" ;;
     deviation) "$python" "$here/deviation.py" --cli "$build/decimate_cli" "$@" ;;
     field)
       rivals
@@ -97,7 +104,7 @@ run() {
 
 case $part in
   build) ;;
-  linear | decimation | deviation | tri_quad | field | field-ours | field-times | page | test) run "$part" "$@" ;;
+  linear | fast | limit | decimation | deviation | tri_quad | field | field-ours | field-times | page | test) run "$part" "$@" ;;
   level)
     run level-core
     echo
@@ -125,11 +132,12 @@ case $part in
     save level-core run level-core
     save level-filter run level-filter
     save decimation run decimation
+    save limit run limit
     save deviation run deviation --reps 3 --time-each --fresh-rivals --jobs 1
     save tri_quad run tri_quad
     ;;
   *)
-    sed -n '5,20p' "$0" >&2
+    sed -n '5,22p' "$0" >&2
     exit 2
     ;;
 esac
