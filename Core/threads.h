@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file threads.h
+/// @brief Some threads that share out a list of jobs.
+
+#ifndef UNDECIMATE_CORE_THREADS_H
+#define UNDECIMATE_CORE_THREADS_H
+
+#include "types.h"
+
+#include <functional>
+#include <memory>
+
+namespace undecimate
+{
+
+/// Threads that wait for work until they are destroyed. The caller's thread is one of them.
+class Threads
+{
+public:
+  /// More threads than this are never made.
+  static constexpr int kMaximumThreads = 1024;
+
+  /// @param count of threads, the caller's included; 0 or less = as many as the machine has cores.
+  /// Fewer are made if the system refuses more.
+  explicit Threads(int count);
+  ~Threads();
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+  int count() const;
+
+  /// A job: its number, and the number of the thread that does it in [0, count()). Thread 0 is the
+  /// caller's.
+  using Job = std::function<void(Index job, int thread)>;
+
+  /// Do the jobs 0 .. jobCount - 1, each once, and wait for all of them. Jobs begin in the order of
+  /// their numbers. What was written before is seen by all jobs, and what they write by the caller
+  /// afterwards. Not to be called by a job.
+  /// @throw the first exception of a job; jobs that had not begun by then are left out
+  void run(Index jobCount, const Job& job);
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> internals_;
+};
+
+} // namespace undecimate
+
+#endif
