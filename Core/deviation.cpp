@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace undecimate
 {
@@ -136,14 +137,14 @@ struct Rows
 
 } // namespace
 
-struct DeviationCriterion::Internals
+// What all threads know.
+struct DeviationCriterion::Shared
 {
   TriangleTopology& topology;
   OriginalSurface original;
   HeightFieldDirection heightField;
-  double triangleCount = 0.0; // that are left
-  double holeArea = 0.0;      // of the mean hole, were there one triangle
-  double unit = 0.0;          // 1 / diagonal: distances are in diagonals from the start
+  double holeArea = 0.0; // of the mean hole, were there one triangle
+  double unit = 0.0;     // 1 / diagonal: distances are in diagonals from the start
 
   // Nodal arrays: an error e of array k counts as the distance arrayScales[k] * e. Holes at nodes
   // where an array is undefined (NaN) stay open.
@@ -157,6 +158,33 @@ struct DeviationCriterion::Internals
   // MeshNode::value), and one for each boundary edge (by its first node), if there is a boundary.
   std::vector<Index> boundaryFirst;
   std::vector<Index> boundaryNext;
+
+  Shared(const TriangleMeshView& mesh, TriangleTopology& topology_,
+    const std::vector<NodalArrayView>& arrays_)
+    : topology(topology_)
+    , original(mesh, topology_)
+    , heightField(topology_)
+    , arrays(arrays_)
+  {
+  }
+};
+
+struct DeviationCriterion::Internals
+{
+  std::shared_ptr<Shared> shared;
+  TriangleTopology& topology = shared->topology;
+  const OriginalSurface& original = shared->original;
+  const HeightFieldDirection& heightField = shared->heightField;
+  double triangleCount = shared->topology.triangleCount(); // that are left
+  const double holeArea = shared->holeArea;
+  const double unit = shared->unit;
+  const std::vector<NodalArrayView>& arrays = shared->arrays;
+  const std::vector<double>& arrayScales = shared->arrayScales;
+  const std::vector<ArrayRange>& arrayRanges = shared->arrayRanges;
+  const bool useArrays = shared->useArrays;
+  const std::vector<unsigned char>& undefined = shared->undefined;
+  std::vector<Index>& boundaryFirst = shared->boundaryFirst;
+  std::vector<Index>& boundaryNext = shared->boundaryNext;
 
   // The hole at hand.
   std::array<Vector, kMaximumPatchCells + 1> ring;
@@ -231,13 +259,14 @@ struct DeviationCriterion::Internals
   Best best;
   std::vector<unsigned char> assignment; // triangle of the best filling for each sample
 
-  Internals(const TriangleMeshView& mesh, TriangleTopology& topology_,
-    const std::vector<NodalArrayView>& arrays_)
-    : topology(topology_)
-    , original(mesh, topology_)
-    , heightField(topology_)
-    , arrays(arrays_)
+  explicit Internals(std::shared_ptr<Shared> shared_)
+    : shared(std::move(shared_))
+    , marks(static_cast<std::size_t>(this->topology.nodeCount()) / 64 + 1, 0)
   {
+    for (auto& row : this->forbidden)
+    {
+      row.fill(false);
+    }
   }
 
   bool prepare(const Hole& hole);
@@ -290,9 +319,9 @@ struct DeviationCriterion::Internals
 
 DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
   const std::vector<NodalArrayView>& arrays, double scalarWeight)
-  : internals_(std::make_unique<Internals>(mesh, topology, arrays))
 {
-  Internals& in = *this->internals_;
+  const auto shared = std::make_shared<Shared>(mesh, topology, arrays);
+  Shared& in = *shared;
   const Index nodeCount = topology.nodeCount();
   const double diagonal = diagonalOf(topology);
   in.unit = diagonal > 0.0 ? 1.0 / diagonal : 0.0;
@@ -316,8 +345,6 @@ DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTop
       }
     }
   }
-  in.marks.assign(static_cast<std::size_t>(nodeCount) / 64 + 1, 0);
-  in.triangleCount = topology.triangleCount();
   for (Index t = 0; t < topology.triangleCount(); ++t)
   {
     const auto& nodes = topology.triangle(t).nodes;
@@ -340,13 +367,26 @@ DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTop
       break;
     }
   }
-  for (auto& row : in.forbidden)
-  {
-    row.fill(false);
-  }
+  this->internals_ = std::make_unique<Internals>(shared);
+}
+
+DeviationCriterion::DeviationCriterion(std::unique_ptr<Internals> internals)
+  : internals_(std::move(internals))
+{
 }
 
 DeviationCriterion::~DeviationCriterion() = default;
+DeviationCriterion::DeviationCriterion(DeviationCriterion&& other) noexcept = default;
+
+DeviationCriterion DeviationCriterion::forThread() const
+{
+  return DeviationCriterion(std::make_unique<Internals>(this->internals_->shared));
+}
+
+void DeviationCriterion::setTrianglesLeft(Index count)
+{
+  this->internals_->triangleCount = count;
+}
 
 // Geometry of the hole, relative to its node.
 bool DeviationCriterion::Internals::prepare(const Hole& hole)

@@ -56,6 +56,14 @@ public:
   DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
     const std::vector<NodalArrayView>& arrays, double scalarWeight);
   ~DeviationCriterion();
+  DeviationCriterion(DeviationCriterion&& other) noexcept;
+
+  /// The same, for another thread: both may be used at the same time for nodes that share no node
+  /// of their rings.
+  DeviationCriterion forThread() const;
+
+  /// Tell how many triangles of the mesh are left, where others remove some, too.
+  void setTrianglesLeft(Index count);
 
   /// Cost of the best triangulation; false if there is none.
   bool evaluate(Index node, double& cost);
@@ -74,7 +82,9 @@ public:
   void removed(const Hole& hole, const HoleTriangulation& filling);
 
 private:
+  struct Shared;
   struct Internals;
+  explicit DeviationCriterion(std::unique_ptr<Internals> internals);
   std::unique_ptr<Internals> internals_;
 };
 

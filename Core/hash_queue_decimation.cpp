@@ -4,10 +4,11 @@
 #include "hash_queue_decimation.h"
 
 #include "array_range.h"
-#include "cell_sources.h"
 #include "deviation.h"
 #include "guarded.h"
 #include "mean_edge_criterion.h"
+#include "node_removal.h"
+#include "parallel_decimation.h"
 #include "quadric_criterion.h"
 #include "triangle_topology.h"
 
@@ -15,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <type_traits>
 
@@ -23,82 +25,6 @@ namespace undecimate
 
 namespace
 {
-
-constexpr double kRightAngle = 90.0;
-
-/// Intervals of either spacing.
-class Intervals
-{
-public:
-  Intervals(const HashQueueDecimationOptions& options, const std::vector<float>& costs)
-    : logarithmic_(options.intervalSpacing == IntervalSpacing::Logarithmic)
-    , exponential_(0.0, 0.0, 1)
-  {
-    if (this->logarithmic_)
-    {
-      return;
-    }
-    float smallest = std::numeric_limits<float>::max();
-    float largest = 0.0F;
-    std::int64_t queued = 0;
-    for (const float cost : costs)
-    {
-      if (cost >= 0.0F)
-      {
-        smallest = std::min(smallest, cost);
-        largest = std::max(largest, cost);
-        ++queued;
-      }
-    }
-    // [K03] eq. 1: m = floor(n / k).
-    const double count = std::floor(static_cast<double>(queued) / options.intervalNodes);
-    this->exponential_ = ExponentialIntervals(std::min(smallest, largest), largest,
-      static_cast<Index>(std::clamp(count, 1.0, static_cast<double>(1 << 24))));
-  }
-
-  Index count() const
-  {
-    return this->logarithmic_ ? kLogarithmicIntervals : this->exponential_.count();
-  }
-
-  Index of(double cost) const
-  {
-    return this->logarithmic_ ? logarithmicInterval(static_cast<float>(cost))
-                              : this->exponential_.interval(cost);
-  }
-
-private:
-  bool logarithmic_;
-  ExponentialIntervals exponential_;
-};
-
-/// Where to stop, in triangles and nodes that are left.
-struct Goal
-{
-  Index triangles = 0;
-  Index nodes = kNone; // no such goal
-  StopReason triangleReason = StopReason::TargetReduction;
-  double error = 0.0;
-
-  Goal(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options)
-  {
-    const double left = (1.0 - options.targetReduction) * static_cast<double>(mesh.triangleCount);
-    // The rounding of 1 - 0.9 must not ask for a triangle more or less.
-    this->triangles = static_cast<Index>(std::ceil(left * (1.0 - 1e-12)));
-    if (options.targetTriangles > this->triangles)
-    {
-      this->triangles = static_cast<Index>(std::min(options.targetTriangles, mesh.triangleCount));
-      this->triangleReason = StopReason::TargetTriangles;
-    }
-    if (options.targetNodes > 0)
-    {
-      this->nodes = static_cast<Index>(std::min(options.targetNodes, mesh.nodeCount));
-    }
-    this->error = options.criterion == Criterion::AngleToXYPlane
-      ? options.maximumError / kRightAngle
-      : options.maximumError;
-  }
-};
 
 /// The algorithm of [K03] section 1, for any criterion.
 template <typename CriterionType>
@@ -115,16 +41,15 @@ public:
     , nodeCount_(topology.nodeCount())
     , trianglesLeft_(topology.triangleCount())
     , nodesLeft_(this->nodeCount_)
+    , step_(options)
   {
   }
 
   Status run(HashQueueDecimationResult& result)
   {
-    // A removal takes two triangles, or one at the boundary.
     const Index planned = std::max<Index>(1, this->trianglesLeft_ - this->goal_.triangles);
     RecordBuilder builder(this->nodeCount_, this->trianglesLeft_, this->options_.trackCellSources,
-      std::min(
-        this->nodesLeft_ - std::max<Index>(0, this->goal_.nodes), planned / 2 + kBoundarySteps));
+      this->goal_.plannedSteps(this->nodesLeft_, this->trianglesLeft_));
     // Step 1: evaluate all nodes and arrange them in the hash table.
     std::vector<float> costs;
     if (!this->evaluateAll(costs))
@@ -144,7 +69,8 @@ public:
 
     result.stopReason = StopReason::NoRemovableNode;
     bool tooCostly = false;
-    for (std::uint64_t turn = 0; !this->atGoal(result.stopReason); ++turn)
+    for (std::uint64_t turn = 0;
+         !this->goal_.isReached(this->nodesLeft_, this->trianglesLeft_, result.stopReason); ++turn)
     {
       if ((turn & 255) == 0 && !this->reportProgress(planned))
       {
@@ -222,9 +148,6 @@ private:
   };
   using Queue = HashQueueOn<NodeLinks>;
 
-  // Steps at the boundary for which the record sets room aside; it grows if there are more.
-  static constexpr Index kBoundarySteps = 1000;
-
   static constexpr bool kIsQuadric = std::is_same_v<CriterionType, QuadricCriterion>;
 
   // Share of the progress that the first evaluation gets.
@@ -246,21 +169,6 @@ private:
       }
     }
     return true;
-  }
-
-  bool atGoal(StopReason& reason) const
-  {
-    if (this->nodesLeft_ <= this->goal_.nodes)
-    {
-      reason = StopReason::TargetNodes;
-      return true;
-    }
-    if (this->trianglesLeft_ <= this->goal_.triangles)
-    {
-      reason = this->goal_.triangleReason;
-      return true;
-    }
-    return false;
   }
 
   bool reportProgress(Index planned)
@@ -305,42 +213,10 @@ private:
 
   void remove(RecordBuilder& builder, double error)
   {
-    const Hole& hole = this->hole_;
-    const HoleTriangulation& filling = this->filling_;
-    for (int i = 0; i < hole.triangleCount; ++i)
-    {
-      this->slots_[i] = triangleOf(hole.corners[i]);
-      const int corner = cornerOf(hole.corners[i]);
-      unsigned char* cell = this->oldCells_.data() + 3 * i;
-      cell[corner] = 0;
-      cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
-      cell[previousCorner(corner)] = static_cast<unsigned char>(i + 1 == hole.size ? 1 : i + 2);
-    }
-    const unsigned char* filled = filling.triangles.front().data();
-    for (int i = 0; i < 3 * filling.count; ++i)
-    {
-      this->newCells_[i] = static_cast<unsigned char>(filled[i] + 1);
-    }
-    if (this->options_.trackCellSources)
-    {
-      findCellSources(this->topology_, hole, filling, this->sources_.data());
-    }
-    RecordBuilder::Step step;
-    step.node = hole.node;
-    step.ring = hole.ring.data();
-    step.ringSize = hole.size;
-    step.oldCount = hole.triangleCount;
-    step.newCount = filling.count;
-    step.slots = this->slots_.data();
-    step.oldCells = this->oldCells_.data();
-    step.newCells = this->newCells_.data();
-    step.sources = this->sources_.data();
-    step.error =
-      this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * error : error;
-    builder.append(step);
-    this->topology_.replace(hole, filling);
-    this->criterion_.removed(hole, filling);
-    this->trianglesLeft_ -= hole.triangleCount - filling.count;
+    builder.append(this->step_.of(this->topology_, this->hole_, this->filling_, error));
+    this->topology_.replace(this->hole_, this->filling_);
+    this->criterion_.removed(this->hole_, this->filling_);
+    this->trianglesLeft_ -= this->hole_.triangleCount - this->filling_.count;
     --this->nodesLeft_;
   }
 
@@ -390,10 +266,7 @@ private:
   Index nodesLeft_;
   Hole hole_;
   HoleTriangulation filling_;
-  std::array<unsigned char, kMaximumPatchCells> sources_;
-  std::array<Index, kMaximumPatchCells> slots_;
-  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
-  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
+  RecordedStep step_;
 };
 
 Outcome checkArrays(const HashQueueDecimationOptions& options)
@@ -436,6 +309,12 @@ Outcome checkOptions(const HashQueueDecimationOptions& options)
   if (!(options.scalarWeight >= 0.0) || !std::isfinite(options.scalarWeight))
   {
     return invalid("ScalarWeight", options.scalarWeight, "0 or more, and finite");
+  }
+  if (options.parallel && options.criterion == Criterion::Quadric)
+  {
+    return { Status::InvalidArgument,
+      "The criterion Quadric works with one thread. Switch Parallel off, or choose another "
+      "criterion." };
   }
   if (options.targetNodes < 0)
   {
@@ -525,12 +404,26 @@ void flagKeptNodes(const TriangleMeshView& mesh, bool preserveBoundary, Triangle
 Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
   Monitor& monitor, HashQueueDecimationResult& result)
 {
-  TriangleTopology topology(mesh);
+  std::unique_ptr<Threads> threads;
+  if (options.parallel)
+  {
+    threads = std::make_unique<Threads>(options.threads);
+  }
+  TriangleTopology topology(mesh, threads.get());
   flagKeptNodes(mesh, options.preserveBoundary, topology, result);
   const Goal goal(mesh, options);
   const auto decimateBy = [&](auto&& criterion)
   {
     using CriterionType = std::decay_t<decltype(criterion)>;
+    if constexpr (!std::is_same_v<CriterionType, QuadricCriterion>)
+    {
+      if (options.parallel)
+      {
+        return ParallelDecimation<CriterionType>(
+          topology, criterion, options, goal, monitor, *threads)
+          .run(result);
+      }
+    }
     return Decimation<CriterionType>(topology, criterion, options, goal, monitor).run(result);
   };
   const NodalArrayView* array =

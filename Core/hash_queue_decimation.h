@@ -65,6 +65,11 @@ struct HashQueueDecimationOptions
   std::vector<NodalArrayView> arrays;
   double scalarWeight = 0.02; ///< >= 0; 0 = geometry only. Deviation only.
 
+  /// Decimate by several threads (parallel_decimation.h). The result is not that of the serial
+  /// algorithm, but about as good, and does not depend on the number of threads. Not with Quadric.
+  bool parallel = false;
+  int threads = 0; ///< with `parallel`; 0 = as many as cores
+
   /// Record from which cell each new cell takes its values (needed if there is cell data).
   bool trackCellSources = false;
 };

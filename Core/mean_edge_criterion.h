@@ -33,6 +33,13 @@ public:
   /// @param topology with the positions of the nodes; their values and sums are ours from now on
   MeanEdgeCriterion(TriangleTopology& topology, const NodalArrayView* array);
 
+  /// The same, for another thread: both may be used at the same time for nodes that share no node
+  /// of their rings.
+  MeanEdgeCriterion forThread() const { return *this; }
+
+  /// As DeviationCriterion::setTrianglesLeft(); here they do not matter.
+  void setTrianglesLeft(Index /*count*/) {}
+
   /// Mean over the edges at a node, in [0, 1]. O(1).
   bool evaluate(Index node, double& cost) const
   {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -279,10 +280,10 @@ struct RecordOrder
   std::vector<Index> order;   // original number at each position
   LargeArray<Index> position; // and the other way round
 
-  RecordOrder(Index count, const std::vector<Index>& comingBack)
-    : order(count)
-    , position(count, kNone)
+  void set(Index count, const std::vector<Index>& comingBack)
   {
+    this->order.resize(count);
+    this->position.assign(count, kNone);
     Index next = count - static_cast<Index>(comingBack.size());
     for (const Index i : comingBack)
     {
@@ -425,9 +426,10 @@ public:
   static constexpr int kCapacity = (3 + (2 * kMostCorners + 1) * kMaximumPatchCells + 7) / 8 * 8;
   using Shape = std::array<unsigned char, kCapacity>;
 
-  /// Number of a shape, which is added to the record if it is new.
+  /// Number of a shape, which is added to `shapes` and `shapeOffsets` of the record if it is new.
   /// @param size its bytes; those up to the next multiple of 8 must be 0
-  Index number(const Shape& shape, int size, Record& record)
+  template <typename Shapes>
+  Index number(const Shape& shape, int size, Shapes& record)
   {
     const std::uint64_t hash = hashOf(shape, size);
     std::size_t i = hash & this->mask();
@@ -503,6 +505,80 @@ private:
   std::vector<Entry> entries_ = std::vector<Entry>(1024);
 };
 
+void padWithZeros(ShapeTable::Shape& shape, int size)
+{
+  std::fill_n(shape.begin() + size, (8 - size % 8) % 8, static_cast<unsigned char>(0));
+}
+
+void add(std::vector<Index>& to, const Index* values, int count)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    to.push_back(values[i]);
+  }
+}
+
+/// A step as the record has it: its shape, and the nodes that no new cell has.
+struct EncodedStep
+{
+  ShapeTable::Shape shape;
+  int size = 0; // of the shape
+  std::array<Index, kMaximumRing + 1> extraNodes;
+  int extra = 0;
+};
+
+// Numbering by first appearance in the new cells makes equal patches equal shapes, and leaves the
+// nodes that no new cell has with the last numbers.
+template <int Corners>
+EncodedStep encode(const RecordBuilder::Step& step, bool hasSources)
+{
+  EncodedStep encoded;
+  std::array<unsigned char, kMaximumLocals> local; // of a position in the ring; 0 = none yet
+  std::fill_n(local.begin(), step.ringSize + 1, static_cast<unsigned char>(0));
+  local[kNoLocal] = kNoLocal;
+  unsigned char locals = 0;
+  ShapeTable::Shape& shape = encoded.shape;
+  int size = 3 + Corners * (step.oldCount + step.newCount);
+  unsigned char* oldLocals = shape.data() + 3;
+  unsigned char* newLocals = oldLocals + Corners * step.oldCount;
+  for (int i = 0; i < Corners * step.newCount; ++i)
+  {
+    const int position = step.newCells[i];
+    const bool known = local[position] != 0;
+    locals = static_cast<unsigned char>(locals + (known ? 0 : 1));
+    local[position] = known ? local[position] : locals;
+    newLocals[i] = local[position];
+  }
+  // Most often all nodes of the ring are known by now.
+  if (locals < step.ringSize)
+  {
+    for (int i = 0; i < Corners * step.oldCount; ++i)
+    {
+      const int position = step.oldCells[i];
+      if (position != 0 && local[position] == 0)
+      {
+        local[position] = ++locals;
+        encoded.extraNodes[encoded.extra++] = step.ring[position - 1];
+      }
+    }
+  }
+  for (int i = 0; i < Corners * step.oldCount; ++i)
+  {
+    oldLocals[i] = local[step.oldCells[i]]; // that of the removed node stays 0
+  }
+  shape[0] = static_cast<unsigned char>(step.oldCount);
+  shape[1] = static_cast<unsigned char>(step.newCount);
+  shape[2] = static_cast<unsigned char>(encoded.extra);
+  if (hasSources)
+  {
+    std::copy_n(step.sources, step.newCount, shape.begin() + size);
+    size += step.newCount;
+  }
+  padWithZeros(shape, size);
+  encoded.size = size;
+  return encoded;
+}
+
 } // namespace
 
 // Steps in the order of removal and in original numbers; finish() reverses and renumbers.
@@ -574,147 +650,301 @@ void RecordBuilder::appendCells(const Step& step)
 {
   Internals& in = *this->internals_;
   Record& record = in.record;
-
-  // Numbering by first appearance in the new cells makes equal patches equal shapes, and leaves the
-  // nodes that no new cell has with the last numbers.
-  std::array<unsigned char, kMaximumLocals> local; // of a position in the ring; 0 = none yet
-  std::array<Index, kMaximumRing + 1> extraNodes;
-  std::fill_n(local.begin(), step.ringSize + 1, static_cast<unsigned char>(0));
-  local[kNoLocal] = kNoLocal;
-  unsigned char locals = 0;
-  ShapeTable::Shape shape;
-  int size = 3 + Corners * (step.oldCount + step.newCount);
-  unsigned char* oldLocals = shape.data() + 3;
-  unsigned char* newLocals = oldLocals + Corners * step.oldCount;
-  for (int i = 0; i < Corners * step.newCount; ++i)
-  {
-    const int position = step.newCells[i];
-    const bool known = local[position] != 0;
-    locals = static_cast<unsigned char>(locals + (known ? 0 : 1));
-    local[position] = known ? local[position] : locals;
-    newLocals[i] = local[position];
-  }
-  // Most often all nodes of the ring are known by now.
-  int extra = 0;
-  if (locals < step.ringSize)
-  {
-    for (int i = 0; i < Corners * step.oldCount; ++i)
-    {
-      const int position = step.oldCells[i];
-      if (position != 0 && local[position] == 0)
-      {
-        local[position] = ++locals;
-        extraNodes[extra++] = step.ring[position - 1];
-      }
-    }
-  }
-  for (int i = 0; i < Corners * step.oldCount; ++i)
-  {
-    oldLocals[i] = local[step.oldCells[i]]; // that of the removed node stays 0
-  }
-  shape[0] = static_cast<unsigned char>(step.oldCount);
-  shape[1] = static_cast<unsigned char>(step.newCount);
-  shape[2] = static_cast<unsigned char>(extra);
-
+  const EncodedStep encoded = encode<Corners>(step, record.hasSources);
   if (record.hasSources)
   {
-    std::copy_n(step.sources, step.newCount, shape.begin() + size);
-    size += step.newCount;
-    std::uint64_t heirs = 0;
-    std::array<Index, kMaximumPatchCells> inherited;
-    for (int i = 0; i < step.newCount; ++i)
-    {
-      heirs |= std::uint64_t{ 1 } << step.sources[i];
-      inherited[i] = in.sources[step.slots[step.sources[i]]];
-    }
-    for (int i = 0; i < step.oldCount; ++i)
-    {
-      if (((heirs >> i) & 1) == 0)
-      {
-        record.lostSources.push_back(in.sources[step.slots[i]]);
-      }
-    }
-    for (int i = 0; i < step.newCount; ++i)
-    {
-      in.sources[step.slots[i]] = inherited[i];
-    }
+    this->inherit(step.sources, step.oldCount, step.newCount, step.slots);
   }
-
-  std::fill_n(shape.begin() + size, (8 - size % 8) % 8, static_cast<unsigned char>(0));
-  record.stepShapes.push_back(in.shapeTable.number(shape, size, record));
+  record.stepShapes.push_back(in.shapeTable.number(encoded.shape, encoded.size, record));
   in.largestError = std::max(in.largestError, static_cast<float>(step.error));
   record.stepErrors.push_back(in.largestError);
-  const auto add = [](std::vector<Index>& to, const Index* values, int count)
-  {
-    for (int i = 0; i < count; ++i)
-    {
-      to.push_back(values[i]);
-    }
-  };
   add(record.patches, step.slots, step.newCount);
-  add(record.patches, extraNodes.data(), extra);
+  add(record.patches, encoded.extraNodes.data(), encoded.extra);
   in.removedNodes.push_back(step.node);
   add(in.freedSlots, step.slots + step.newCount, step.oldCount - step.newCount);
 }
 
-Record RecordBuilder::finish(const CornersOf& cornersOf, std::vector<Index>& baseCells)
+// The new cells of a step take over the sources of old ones.
+void RecordBuilder::inherit(
+  const unsigned char* sources, int oldCount, int newCount, const Index* slots)
+{
+  Internals& in = *this->internals_;
+  std::uint64_t heirs = 0;
+  std::array<Index, kMaximumPatchCells> inherited;
+  for (int i = 0; i < newCount; ++i)
+  {
+    heirs |= std::uint64_t{ 1 } << sources[i];
+    inherited[i] = in.sources[slots[sources[i]]];
+  }
+  for (int i = 0; i < oldCount; ++i)
+  {
+    if (((heirs >> i) & 1) == 0)
+    {
+      in.record.lostSources.push_back(in.sources[slots[i]]);
+    }
+  }
+  for (int i = 0; i < newCount; ++i)
+  {
+    in.sources[slots[i]] = inherited[i];
+  }
+}
+
+struct RecordSteps::Internals
+{
+  bool hasSources = false;
+  int corners = kTriangleCorners;
+  std::vector<unsigned char> shapes;
+  std::vector<Index> shapeOffsets{ 0 };
+  ShapeTable shapeTable;
+  std::vector<Index> stepShapes;
+  std::vector<float> stepErrors;
+  std::vector<Index> removedNodes;
+  std::vector<Index> patches;    // new cells' slots and extra nodes, step after step
+  std::vector<Index> freedSlots; // step after step
+
+  // What was taken.
+  std::size_t taken = 0;
+  std::size_t patchTaken = 0;
+  std::size_t freedTaken = 0;
+  std::vector<Index> numbers; // of the shapes in the record that takes them
+
+  const unsigned char* shapeOf(std::size_t step) const
+  {
+    return this->shapes.data() + this->shapeOffsets[this->stepShapes[step]];
+  }
+};
+
+RecordSteps::RecordSteps(bool trackSources, int cornersPerCell)
+  : internals_(std::make_unique<Internals>())
+{
+  this->internals_->hasSources = trackSources;
+  this->internals_->corners = cornersPerCell;
+}
+
+RecordSteps::~RecordSteps() = default;
+RecordSteps::RecordSteps(RecordSteps&& other) noexcept = default;
+RecordSteps& RecordSteps::operator=(RecordSteps&& other) noexcept = default;
+
+void RecordSteps::append(const RecordBuilder::Step& step)
+{
+  Internals& in = *this->internals_;
+  const EncodedStep encoded = in.corners == kTriangleCorners
+    ? encode<kTriangleCorners>(step, in.hasSources)
+    : encode<kMostCorners>(step, in.hasSources);
+  in.stepShapes.push_back(in.shapeTable.number(encoded.shape, encoded.size, in));
+  const float error = static_cast<float>(step.error);
+  in.stepErrors.push_back(in.stepErrors.empty() ? error : std::max(in.stepErrors.back(), error));
+  add(in.patches, step.slots, step.newCount);
+  add(in.patches, encoded.extraNodes.data(), encoded.extra);
+  in.removedNodes.push_back(step.node);
+  add(in.freedSlots, step.slots + step.newCount, step.oldCount - step.newCount);
+}
+
+Index RecordSteps::left() const
+{
+  return static_cast<Index>(this->internals_->stepShapes.size() - this->internals_->taken);
+}
+
+int RecordSteps::nextCellsGone() const
+{
+  const unsigned char* shape = this->internals_->shapeOf(this->internals_->taken);
+  return shape[0] - shape[1];
+}
+
+void RecordBuilder::takeNext(RecordSteps& steps)
+{
+  Internals& in = *this->internals_;
+  RecordSteps::Internals& from = *steps.internals_;
+  Record& record = in.record;
+  const Index local = from.stepShapes[from.taken];
+  const unsigned char* bytes = from.shapeOf(from.taken);
+  if (from.numbers.empty())
+  {
+    from.numbers.assign(from.shapeOffsets.size() - 1, kNone);
+  }
+  Index& number = from.numbers[local];
+  if (number == kNone)
+  {
+    const int size = from.shapeOffsets[local + 1] - from.shapeOffsets[local];
+    ShapeTable::Shape shape;
+    std::copy_n(bytes, size, shape.begin());
+    padWithZeros(shape, size);
+    number = in.shapeTable.number(shape, size, record);
+  }
+  const int newCount = bytes[1];
+  const int freed = bytes[0] - newCount;
+  const Index* patch = from.patches.data() + from.patchTaken;
+  const Index* freedSlots = from.freedSlots.data() + from.freedTaken;
+  if (record.hasSources)
+  {
+    std::array<Index, kMaximumPatchCells> slots;
+    std::copy_n(freedSlots, freed, std::copy_n(patch, newCount, slots.begin()));
+    const unsigned char* sources = bytes + 3 + from.corners * (bytes[0] + newCount);
+    this->inherit(sources, bytes[0], newCount, slots.data());
+  }
+  record.stepShapes.push_back(number);
+  in.largestError = std::max(in.largestError, from.stepErrors[from.taken]);
+  record.stepErrors.push_back(in.largestError);
+  add(record.patches, patch, newCount + bytes[2]);
+  in.removedNodes.push_back(from.removedNodes[from.taken]);
+  add(in.freedSlots, freedSlots, freed);
+  ++from.taken;
+  from.patchTaken += newCount + bytes[2];
+  from.freedTaken += freed;
+}
+
+void RecordSteps::undoRest(const CornersOf& cornersOf)
+{
+  Internals& in = *this->internals_;
+  const Index* patch = in.patches.data() + in.patches.size();
+  const Index* freedSlots = in.freedSlots.data() + in.freedSlots.size();
+  for (std::size_t step = in.stepShapes.size(); step-- > in.taken;)
+  {
+    const unsigned char* shape = in.shapeOf(step);
+    const int oldCount = shape[0];
+    const int newCount = shape[1];
+    const int extra = shape[2];
+    const unsigned char* oldCells = shape + 3;
+    const unsigned char* newCells = oldCells + in.corners * oldCount;
+    patch -= newCount + extra;
+    freedSlots -= oldCount - newCount;
+    // The nodes that the local numbers stand for are read from the new cells, but for the removed
+    // one and those that no new cell has, whose numbers are the last ones.
+    std::array<Index, kMaximumLocals> nodes;
+    nodes[kNoLocal] = kNone;
+    nodes[0] = in.removedNodes[step];
+    int locals = 0;
+    for (int i = 0; i < newCount; ++i)
+    {
+      const Index* corners = cornersOf(patch[i]);
+      for (int c = 0; c < in.corners; ++c)
+      {
+        const int local = newCells[in.corners * i + c];
+        nodes[local] = corners[c];
+        locals = local == kNoLocal ? locals : std::max(locals, local);
+      }
+    }
+    std::copy_n(patch + newCount, extra, nodes.begin() + locals + 1);
+    for (int i = 0; i < oldCount; ++i)
+    {
+      Index* corners = cornersOf(i < newCount ? patch[i] : freedSlots[i - newCount]);
+      for (int c = 0; c < in.corners; ++c)
+      {
+        corners[c] = nodes[oldCells[in.corners * i + c]];
+      }
+    }
+  }
+  in.stepShapes.resize(in.taken);
+  in.stepErrors.resize(in.taken);
+  in.removedNodes.resize(in.taken);
+  in.patches.resize(in.patchTaken);
+  in.freedSlots.resize(in.freedTaken);
+}
+
+Record RecordBuilder::finish(
+  const CornersOf& cornersOf, std::vector<Index>& baseCells, Threads* threads)
 {
   Internals& in = *this->internals_;
   Record record = std::move(in.record);
   in.shapeTable.clear();
   const Index steps = static_cast<Index>(in.removedNodes.size());
-
-  // Reverse the steps. A list of chunks is reversed in place: the whole, then each chunk.
-  std::reverse(in.removedNodes.begin(), in.removedNodes.end());
-  std::reverse(record.stepShapes.begin(), record.stepShapes.end());
-  std::reverse(record.stepErrors.begin(), record.stepErrors.end());
-  std::reverse(record.patches.begin(), record.patches.end());
-  std::reverse(in.freedSlots.begin(), in.freedSlots.end());
-  std::reverse(record.lostSources.begin(), record.lostSources.end());
+  const auto run = [threads](Index count, const std::function<void(Index)>& job)
+  {
+    if (threads)
+    {
+      threads->run(count, [&job](Index i, int /*thread*/) { job(i); });
+      return;
+    }
+    for (Index i = 0; i < count; ++i)
+    {
+      job(i);
+    }
+  };
+  const auto shapeOf = [&record](Index step)
+  { return record.shapes.data() + record.shapeOffsets[record.stepShapes[step]]; };
   const auto reverseChunk = [](Index* begin, int size)
   {
     std::reverse(begin, begin + size);
     return begin + size;
   };
-  const auto shapeOf = [&record](Index step)
-  { return record.shapes.data() + record.shapeOffsets[record.stepShapes[step]]; };
-  Index* freed = in.freedSlots.data();
-  Index* lost = record.lostSources.data();
-  for (Index step = 0; step < steps; ++step)
+
+  // Reverse the steps. A list of chunks is reversed in place: the whole, then each chunk.
+  std::reverse(record.stepShapes.begin(), record.stepShapes.end());
+  const auto reverseFreed = [&]
   {
-    const unsigned char* shape = shapeOf(step);
-    freed = reverseChunk(freed, shape[0] - shape[1]);
-    if (record.hasSources)
+    std::reverse(in.freedSlots.begin(), in.freedSlots.end());
+    Index* freed = in.freedSlots.data();
+    for (Index step = 0; step < steps; ++step)
     {
-      lost = reverseChunk(lost, lostSourceCount(shape, record.cornersPerCell));
+      const unsigned char* shape = shapeOf(step);
+      freed = reverseChunk(freed, shape[0] - shape[1]);
     }
-  }
+  };
+  const auto reverseOthers = [&]
+  {
+    std::reverse(in.removedNodes.begin(), in.removedNodes.end());
+    std::reverse(record.stepErrors.begin(), record.stepErrors.end());
+    std::reverse(record.lostSources.begin(), record.lostSources.end());
+    Index* lost = record.lostSources.data();
+    for (Index step = 0; record.hasSources && step < steps; ++step)
+    {
+      lost = reverseChunk(lost, lostSourceCount(shapeOf(step), record.cornersPerCell));
+    }
+  };
+  const std::function<void()> reversals[] = { reverseFreed, reverseOthers,
+    [&record] { std::reverse(record.patches.begin(), record.patches.end()); } };
+  run(3, [&reversals](Index i) { reversals[i](); });
 
   record.nodeCount = in.nodeCount;
   record.cellCount = in.cellCount;
   record.baseNodeCount = in.nodeCount - steps;
   record.baseCellCount = in.cellCount - static_cast<Index>(in.freedSlots.size());
-  RecordOrder nodes(in.nodeCount, in.removedNodes);
-  release(in.removedNodes);
-  RecordOrder slots(in.cellCount, in.freedSlots);
-  release(in.freedSlots);
+  RecordOrder nodes;
+  RecordOrder slots;
+  run(2,
+    [&](Index i)
+    {
+      i == 0 ? slots.set(in.cellCount, in.freedSlots) : nodes.set(in.nodeCount, in.removedNodes);
+      release(i == 0 ? in.freedSlots : in.removedNodes);
+    });
   record.nodeOrder = std::move(nodes.order);
   record.cellOrder = std::move(slots.order);
-  Index* patch = record.patches.data();
-  for (Index step = 0; step < steps; ++step)
-  {
-    const unsigned char* shape = shapeOf(step);
-    Index* extras = patch + shape[1];
-    Index* end = reverseChunk(patch, shape[1] + shape[2]);
-    for (; patch != extras; ++patch)
+
+  // Renumber the patches, in blocks of steps. First where those of each block begin.
+  constexpr Index kBlock = 1 << 15;
+  const Index blocks = steps / kBlock + 1;
+  const auto blockEnd = [steps](Index block)
+  { return block < steps / kBlock ? (block + 1) * kBlock : steps; };
+  std::vector<std::size_t> begins(blocks + std::size_t{ 1 }, 0);
+  run(blocks,
+    [&](Index block)
     {
-      *patch = slots.position[*patch];
-    }
-    for (; patch != end; ++patch)
+      for (Index step = block * kBlock; step < blockEnd(block); ++step)
+      {
+        const unsigned char* shape = shapeOf(step);
+        begins[block + std::size_t{ 1 }] += shape[1] + shape[2];
+      }
+    });
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  run(blocks,
+    [&](Index block)
     {
-      *patch = nodes.position[*patch];
-    }
-  }
+      Index* patch = record.patches.data() + begins[block];
+      for (Index step = block * kBlock; step < blockEnd(block); ++step)
+      {
+        const unsigned char* shape = shapeOf(step);
+        Index* extras = patch + shape[1];
+        Index* end = reverseChunk(patch, shape[1] + shape[2]);
+        for (; patch != extras; ++patch)
+        {
+          *patch = slots.position[*patch];
+        }
+        for (; patch != end; ++patch)
+        {
+          *patch = nodes.position[*patch];
+        }
+      }
+    });
   release(slots.position);
 
   const std::size_t corners = record.cornersPerCell;

@@ -166,6 +166,81 @@ TEST(RecordBuilder, EqualShapesAreStoredOnce)
 }
 
 // The bound of the record's size in the documentation, and what byteSize() counts.
+// A record of two pieces whose steps are taken over in turns is that of one decimator; the steps
+// that are not taken are undone.
+TEST(RecordSteps, AreTakenOverAndUndone)
+{
+  // Two squares of four triangles around a node, as in SquareRecord, beside each other.
+  const unsigned char oldCells[] = { 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1 };
+  const unsigned char newCells[] = { 1, 2, 3, 1, 3, 4 };
+  const unsigned char sources[] = { 0, 2 };
+  const std::vector<Index> original{ 4, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, //
+    9, 5, 6, 9, 6, 7, 9, 7, 8, 9, 8, 5 };
+  std::vector<Index> cells = original;
+  const Index rings[2][4] = { { 0, 1, 2, 3 }, { 5, 6, 7, 8 } };
+  const Index slots[2][4] = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } };
+  RecordSteps steps[] = { RecordSteps(true), RecordSteps(true) };
+  RecordBuilder together(10, 8, true);
+  for (int i = 0; i < 2; ++i)
+  {
+    RecordBuilder::Step step;
+    step.node = i == 0 ? 4 : 9;
+    step.ring = rings[i];
+    step.ringSize = 4;
+    step.oldCount = 4;
+    step.newCount = 2;
+    step.slots = slots[i];
+    step.oldCells = oldCells;
+    step.newCells = newCells;
+    step.sources = sources;
+    step.error = 0.5 + i;
+    steps[i].append(step);
+    together.append(step);
+    const Index filled[] = { rings[i][0], rings[i][1], rings[i][2], rings[i][0], rings[i][2],
+      rings[i][3] };
+    std::copy_n(filled, 6, cells.begin() + 12 * i);
+  }
+  RecordBuilder builder(10, 8, true);
+  ASSERT_EQ(steps[0].left(), 1);
+  EXPECT_EQ(steps[0].nextCellsGone(), 2);
+  builder.takeNext(steps[0]);
+  EXPECT_EQ(steps[0].left(), 0);
+
+  std::vector<Index> undone = cells;
+  RecordSteps other = std::move(steps[1]);
+  other.undoRest([&undone](Index cell) { return undone.data() + 3 * cell; });
+  EXPECT_EQ(other.left(), 0);
+  EXPECT_TRUE(std::equal(undone.begin() + 12, undone.end(), original.begin() + 12));
+  EXPECT_TRUE(std::equal(undone.begin(), undone.begin() + 12, cells.begin()));
+
+  // The same step again, now taken.
+  RecordBuilder::Step step;
+  step.node = 9;
+  step.ring = rings[1];
+  step.ringSize = 4;
+  step.oldCount = 4;
+  step.newCount = 2;
+  step.slots = slots[1];
+  step.oldCells = oldCells;
+  step.newCells = newCells;
+  step.sources = sources;
+  step.error = 1.5;
+  other.append(step);
+  builder.takeNext(other);
+  std::vector<Index> base;
+  std::vector<Index> sameBase;
+  const Record record = builder.finish(testing::cornersOf(cells.data()), base);
+  const Record same = together.finish(testing::cornersOf(cells.data()), sameBase);
+  EXPECT_EQ(base, sameBase);
+  EXPECT_EQ(record.nodeOrder, same.nodeOrder);
+  EXPECT_EQ(record.cellOrder, same.cellOrder);
+  EXPECT_EQ(record.patches, same.patches);
+  EXPECT_EQ(record.shapes, same.shapes);
+  EXPECT_EQ(record.stepErrors, same.stepErrors);
+  EXPECT_EQ(record.lostSources, same.lostSources);
+  EXPECT_EQ(record.baseSources, same.baseSources);
+}
+
 TEST(Record, SizeIsBounded)
 {
   const Mesh grid = testing::hills(110, 110);

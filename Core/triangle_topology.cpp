@@ -4,46 +4,163 @@
 #include "triangle_topology.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace undecimate
 {
+
+namespace
+{
+
+// Do a job for the indices [begin, end) of blocks of [0, count).
+template <typename Job>
+void doInBlocks(Threads* threads, Index count, Index block, const Job& job)
+{
+  if (!threads)
+  {
+    job(0, count);
+    return;
+  }
+  threads->run(count / block + 1,
+    [&](Index i, int /*thread*/) { job(i * block, i < count / block ? (i + 1) * block : count); });
+}
+
+constexpr Index kBlock = 1 << 14;
+
+} // namespace
 
 TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount)
   : triangles_(triangleCount)
   , nodes_(nodeCount)
 {
-  this->build(triangles);
+  this->build(triangles, nullptr);
 }
 
-TriangleTopology::TriangleTopology(const TriangleMeshView& mesh)
+TriangleTopology::TriangleTopology(const TriangleMeshView& mesh, Threads* threads)
   : triangles_(mesh.triangleCount)
   , nodes_(mesh.nodeCount)
 {
-  mesh.wideTriangles ? this->build(mesh.wideTriangles) : this->build(mesh.triangles);
-  const auto place = [this](const auto* coordinates)
+  mesh.wideTriangles ? this->build(mesh.wideTriangles, threads)
+                     : this->build(mesh.triangles, threads);
+  const auto place = [&](const auto* coordinates)
   {
-    for (MeshNode& node : this->nodes_)
-    {
-      node.position = { coordinates[0], coordinates[1], coordinates[2] };
-      coordinates += 3;
-    }
+    doInBlocks(threads, this->nodeCount(), kBlock,
+      [&](Index begin, Index end)
+      {
+        const auto* p = coordinates + std::size_t{ 3 } * begin;
+        for (Index i = begin; i < end; ++i, p += 3)
+        {
+          this->nodes_[i].position = { p[0], p[1], p[2] };
+        }
+      });
   };
   mesh.pointsDouble ? place(mesh.pointsDouble) : place(mesh.pointsFloat);
 }
 
 template <typename Number>
-void TriangleTopology::build(const Number* triangles)
+void TriangleTopology::build(const Number* triangles, Threads* threads)
 {
-  for (Triangle& t : this->triangles_)
+  const auto fill = [&]
   {
-    t = { { static_cast<Index>(triangles[0]), static_cast<Index>(triangles[1]),
-            static_cast<Index>(triangles[2]) },
-      { kNoCorner, kNoCorner, kNoCorner }, kNone, 0 };
-    triangles += 3;
+    doInBlocks(threads, this->triangleCount(), kBlock,
+      [&](Index begin, Index end)
+      {
+        const Number* t = triangles + std::size_t{ 3 } * begin;
+        for (Index i = begin; i < end; ++i, t += 3)
+        {
+          this->triangles_[i] = { { static_cast<Index>(t[0]), static_cast<Index>(t[1]),
+                                    static_cast<Index>(t[2]) },
+            { kNoCorner, kNoCorner, kNoCorner }, kNone, 0 };
+        }
+      });
+  };
+  fill();
+  if (!threads || threads->count() == 1)
+  {
+    this->connect();
   }
-  this->connect();
+  else if (!this->connect(*threads))
+  {
+    fill();
+    this->connect();
+  }
   this->markDegenerate();
-  this->markNodes();
+  this->markNodes(threads);
+}
+
+// connect() by several threads, each for the edges whose smaller node is in its share. False if
+// there are edges of more than two or of misoriented triangles, which lie in several shares.
+bool TriangleTopology::connect(Threads& threads)
+{
+  LargeArray<Corner> first(this->nodes_.size(), kNoCorner);
+  LargeArray<Corner, 2> next(std::size_t{ 3 } * this->triangles_.size());
+  std::atomic<bool> good{ true };
+  const Index share = this->nodeCount() / threads.count() + 1;
+  doInBlocks(&threads, this->nodeCount(), share,
+    [&](Index begin, Index end)
+    {
+      if (!this->connectShare(begin, end, first, next))
+      {
+        good = false;
+      }
+    });
+  return good;
+}
+
+bool TriangleTopology::connectShare(
+  Index begin, Index end, LargeArray<Corner>& first, LargeArray<Corner, 2>& next)
+{
+  const auto behind = [&next](Corner corner) -> Corner&
+  { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
+  const auto isOurs = [begin, end](Index node) { return node >= begin && node < end; };
+  for (Index i = 0; i < this->triangleCount(); ++i)
+  {
+    const std::array<Index, 3> nodes = this->triangles_[i].nodes;
+    for (int c = 0; c < 3; ++c)
+    {
+      const Index from = nodes[nextCorner(c)];
+      const Index to = nodes[previousCorner(c)];
+      if (isOurs(nodes[c]))
+      {
+        this->nodes_[nodes[c]].neighbours |= signature(from) | signature(to);
+      }
+      const Index smaller = std::min(from, to);
+      if (!isOurs(smaller))
+      {
+        continue;
+      }
+      const Corner here = makeCorner(i, c);
+      Corner there = first[smaller];
+      for (; there != kNoCorner; there = behind(there))
+      {
+        const auto& others = this->triangles_[triangleOf(there)].nodes;
+        const Index thereFrom = others[nextCorner(cornerOf(there))];
+        const Index thereTo = others[previousCorner(cornerOf(there))];
+        if (thereFrom == from && thereTo == to)
+        {
+          return false;
+        }
+        if (thereFrom == to && thereTo == from)
+        {
+          break;
+        }
+      }
+      if (there == kNoCorner)
+      {
+        behind(here) = first[smaller];
+        first[smaller] = here;
+        continue;
+      }
+      Corner& across = this->triangles_[triangleOf(there)].across[cornerOf(there)];
+      if (across != kNoCorner)
+      {
+        return false;
+      }
+      across = here;
+      this->triangles_[i].across[c] = there;
+    }
+  }
+  return true;
 }
 
 // Find the triangles on either side of each edge. Of each edge the first corner opposite to it is
@@ -142,35 +259,44 @@ void TriangleTopology::markDegenerate()
   }
 }
 
-void TriangleTopology::markNodes()
+void TriangleTopology::markNodes(Threads* threads)
 {
-  const std::size_t nodeCount = this->nodes_.size();
+  const Index nodeCount = this->nodeCount();
   LargeArray<Index> uses(nodeCount, 0);
   std::vector<unsigned char> open(nodeCount, 0); // fans' ends: boundary edges that leave the node
-  for (Index i = 0; i < static_cast<Index>(this->triangles_.size()); ++i)
-  {
-    const Triangle& t = this->triangles_[i];
-    for (int c = 0; c < 3; ++c)
+  const Index share = threads ? nodeCount / threads->count() + 1 : nodeCount;
+  doInBlocks(threads, nodeCount, share,
+    [&](Index begin, Index end)
     {
-      const Index node = t.nodes[c];
-      ++uses[node];
-      // The first triangle of an open fan has nothing behind its edge node -> next node.
-      const bool start = t.across[previousCorner(c)] == kNoCorner;
-      if (start && open[node] < 2)
+      for (Index i = 0; i < this->triangleCount(); ++i)
       {
-        ++open[node];
+        const Triangle& t = this->triangles_[i];
+        for (int c = 0; c < 3; ++c)
+        {
+          const Index node = t.nodes[c];
+          if (node < begin || node >= end)
+          {
+            continue;
+          }
+          ++uses[node];
+          // The first triangle of an open fan has nothing behind its edge node -> next node.
+          const bool start = t.across[previousCorner(c)] == kNoCorner;
+          if (start && open[node] < 2)
+          {
+            ++open[node];
+          }
+          if (start || this->nodes_[node].corner == kNoCorner)
+          {
+            this->nodes_[node].corner = makeCorner(i, c);
+          }
+        }
       }
-      if (start || this->nodes_[node].corner == kNoCorner)
-      {
-        this->nodes_[node].corner = makeCorner(i, c);
-      }
-    }
-  }
-  for (std::size_t node = 0; node < nodeCount; ++node)
+    });
+  const auto mark = [&](Index node)
   {
     if (uses[node] == 0 || this->nodes_[node].kind != NodeKind::Unused)
     {
-      continue;
+      return;
     }
     // One fan must take in all triangles of the node, else surfaces just touch there.
     Index count = 0;
@@ -188,7 +314,15 @@ void TriangleTopology::markNodes()
     this->nodes_[node].kind = count != uses[node] ? NodeKind::NonManifold
       : open[node] == 0                           ? NodeKind::Interior
                                                   : NodeKind::Boundary;
-  }
+  };
+  doInBlocks(threads, nodeCount, kBlock,
+    [&](Index begin, Index end)
+    {
+      for (Index node = begin; node < end; ++node)
+      {
+        mark(node);
+      }
+    });
 }
 
 bool TriangleTopology::gather(Index node, Hole& hole) const

@@ -11,6 +11,7 @@
 #include "hash_queue.h"
 #include "large_array.h"
 #include "record.h"
+#include "threads.h"
 #include "types.h"
 #include "vector.h"
 
@@ -116,7 +117,8 @@ public:
   TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount);
 
   /// With the positions of the nodes. The mesh must be valid (triangles as above).
-  explicit TriangleTopology(const TriangleMeshView& mesh);
+  /// @param threads to share the work out among, or null; the result is the same
+  explicit TriangleTopology(const TriangleMeshView& mesh, Threads* threads = nullptr);
 
   Index nodeCount() const { return static_cast<Index>(this->nodes_.size()); }
   Index triangleCount() const { return static_cast<Index>(this->triangles_.size()); }
@@ -170,6 +172,31 @@ public:
   /// @return false if it has more than kMaximumPatchCells triangles
   bool gather(Index node, Hole& hole) const;
 
+  /// Whether a condition holds for all nodes that share an edge with a manifold one. Reads of the
+  /// triangles around it nothing but their nodes and what lies across the edges at the node.
+  template <typename Condition>
+  bool allAround(Index node, Condition&& condition) const
+  {
+    const Corner start = this->nodes_[node].corner;
+    Corner corner = start;
+    do
+    {
+      const Triangle& t = this->triangles_[triangleOf(corner)];
+      const int c = cornerOf(corner);
+      if (!condition(t.nodes[nextCorner(c)]))
+      {
+        return false;
+      }
+      const Corner opposite = t.across[nextCorner(c)];
+      if (opposite == kNoCorner)
+      {
+        return condition(t.nodes[previousCorner(c)]) && this->allBefore(start, condition);
+      }
+      corner = makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
+    } while (corner != start);
+    return true;
+  }
+
   /// Whether two nodes share an edge, or, if neither is manifold, it cannot be ruled out.
   /// O(1) for most pairs without an edge, else O(triangles around a manifold one).
   bool mayHaveEdge(Index a, Index b) const
@@ -209,14 +236,35 @@ private:
       prefetch(&this->triangles_[triangleOf(corner)]);
     }
   }
+  // allAround() for the triangles of an open fan that lie before a corner.
+  template <typename Condition>
+  bool allBefore(Corner corner, Condition&& condition) const
+  {
+    for (;;)
+    {
+      const Triangle& before = this->triangles_[triangleOf(corner)];
+      const Corner opposite = before.across[previousCorner(cornerOf(corner))];
+      if (opposite == kNoCorner)
+      {
+        return true;
+      }
+      corner = makeCorner(triangleOf(opposite), previousCorner(cornerOf(opposite)));
+      if (!condition(this->triangles_[triangleOf(corner)].nodes[nextCorner(cornerOf(corner))]))
+      {
+        return false;
+      }
+    }
+  }
   bool findEdge(Index a, Index b) const;
   bool haveEdge(Index a, Index b) const;
   bool fillsExistingTriangle(const Hole& hole) const;
   template <typename Number>
-  void build(const Number* triangles);
+  void build(const Number* triangles, Threads* threads);
   void connect();
+  bool connectShare(Index begin, Index end, LargeArray<Corner>& first, LargeArray<Corner, 2>& next);
+  bool connect(Threads& threads);
   void markDegenerate();
-  void markNodes();
+  void markNodes(Threads* threads);
 
   LargeArray<Triangle> triangles_;
   LargeArray<MeshNode, 1> nodes_;

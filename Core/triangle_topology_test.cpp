@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace undecimate
 {
 namespace
@@ -446,6 +448,44 @@ TEST(TriangleTopology, StaysWhatANewOneWouldBe)
         {
           ASSERT_EQ(turned(ringOf(before)), turned(ringOf(after)));
         }
+      }
+    }
+  }
+}
+
+TEST(TriangleTopology, ThreadsDoNotMatter)
+{
+  std::mt19937 random(3);
+  Mesh holed = testing::shuffled(testing::torus(60, 30), random);
+  holed.triangles.resize(holed.triangles.size() - 300);
+  Mesh repeated = holed;
+  repeated.addTriangle(holed.triangles[0], holed.triangles[2], holed.triangles[1]);
+  Mesh degenerate = holed;
+  degenerate.addTriangle(5, 5, 9);
+  Index touching = kNone;
+  for (const Mesh& mesh : { holed, repeated, degenerate, testing::tJoint(20),
+         testing::bowTie(8, touching), testing::hills(200, 150), Mesh() })
+  {
+    const TriangleTopology serial(mesh.view());
+    for (const int count : { 1, 2, 5 })
+    {
+      Threads threads(count);
+      const TriangleTopology parallel(mesh.view(), &threads);
+      ASSERT_EQ(parallel.nodeCount(), serial.nodeCount());
+      ASSERT_EQ(parallel.triangleCount(), serial.triangleCount());
+      for (Index t = 0; t < serial.triangleCount(); ++t)
+      {
+        ASSERT_EQ(parallel.triangle(t).nodes, serial.triangle(t).nodes);
+        ASSERT_EQ(parallel.triangle(t).across, serial.triangle(t).across);
+        ASSERT_EQ(parallel.triangle(t).first, serial.triangle(t).first);
+        ASSERT_EQ(parallel.triangle(t).spare, serial.triangle(t).spare);
+      }
+      for (Index i = 0; i < serial.nodeCount(); ++i)
+      {
+        ASSERT_EQ(parallel.node(i).neighbours, serial.node(i).neighbours);
+        ASSERT_EQ(parallel.node(i).corner, serial.node(i).corner);
+        ASSERT_EQ(parallel.node(i).kind, serial.node(i).kind);
+        ASSERT_EQ(parallel.node(i).position.x, serial.node(i).position.x);
       }
     }
   }

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file node_removal.h
+/// @brief What the serial and the parallel hash queue decimation share: intervals, goal, steps.
+
+#ifndef UNDECIMATE_CORE_NODE_REMOVAL_H
+#define UNDECIMATE_CORE_NODE_REMOVAL_H
+
+#include "cell_sources.h"
+#include "hash_queue.h"
+#include "hash_queue_decimation.h"
+#include "record.h"
+#include "triangle_topology.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace undecimate
+{
+
+constexpr double kRightAngle = 90.0;
+
+/// Intervals of either spacing.
+class Intervals
+{
+public:
+  Intervals(const HashQueueDecimationOptions& options, const std::vector<float>& costs)
+    : logarithmic_(options.intervalSpacing == IntervalSpacing::Logarithmic)
+    , exponential_(0.0, 0.0, 1)
+  {
+    if (this->logarithmic_)
+    {
+      return;
+    }
+    float smallest = std::numeric_limits<float>::max();
+    float largest = 0.0F;
+    std::int64_t queued = 0;
+    for (const float cost : costs)
+    {
+      if (cost >= 0.0F)
+      {
+        smallest = std::min(smallest, cost);
+        largest = std::max(largest, cost);
+        ++queued;
+      }
+    }
+    // [K03] eq. 1: m = floor(n / k).
+    const double count = std::floor(static_cast<double>(queued) / options.intervalNodes);
+    this->exponential_ = ExponentialIntervals(std::min(smallest, largest), largest,
+      static_cast<Index>(std::clamp(count, 1.0, static_cast<double>(1 << 24))));
+  }
+
+  Index count() const
+  {
+    return this->logarithmic_ ? kLogarithmicIntervals : this->exponential_.count();
+  }
+
+  Index of(double cost) const
+  {
+    return this->logarithmic_ ? logarithmicInterval(static_cast<float>(cost))
+                              : this->exponential_.interval(cost);
+  }
+
+private:
+  bool logarithmic_;
+  ExponentialIntervals exponential_;
+};
+
+/// Where to stop, in triangles and nodes that are left.
+struct Goal
+{
+  Index triangles = 0;
+  Index nodes = kNone; // no such goal
+  StopReason triangleReason = StopReason::TargetReduction;
+  double error = 0.0;
+
+  Goal(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options)
+  {
+    const double left = (1.0 - options.targetReduction) * static_cast<double>(mesh.triangleCount);
+    // The rounding of 1 - 0.9 must not ask for a triangle more or less.
+    this->triangles = static_cast<Index>(std::ceil(left * (1.0 - 1e-12)));
+    if (options.targetTriangles > this->triangles)
+    {
+      this->triangles = static_cast<Index>(std::min(options.targetTriangles, mesh.triangleCount));
+      this->triangleReason = StopReason::TargetTriangles;
+    }
+    if (options.targetNodes > 0)
+    {
+      this->nodes = static_cast<Index>(std::min(options.targetNodes, mesh.nodeCount));
+    }
+    this->error = options.criterion == Criterion::AngleToXYPlane
+      ? options.maximumError / kRightAngle
+      : options.maximumError;
+  }
+
+  bool isReached(Index nodesLeft, Index trianglesLeft, StopReason& reason) const
+  {
+    if (nodesLeft <= this->nodes)
+    {
+      reason = StopReason::TargetNodes;
+      return true;
+    }
+    if (trianglesLeft <= this->triangles)
+    {
+      reason = this->triangleReason;
+      return true;
+    }
+    return false;
+  }
+
+  /// Removals up to the goal, about: one takes two triangles, or one at the boundary.
+  Index plannedSteps(Index nodesLeft, Index trianglesLeft) const
+  {
+    constexpr Index kBoundarySteps = 1000;
+    const Index planned = std::max<Index>(1, trianglesLeft - this->triangles);
+    return std::min(nodesLeft - std::max<Index>(0, this->nodes), planned / 2 + kBoundarySteps);
+  }
+};
+
+/// Writes removals as steps of the record.
+class RecordedStep
+{
+public:
+  explicit RecordedStep(const HashQueueDecimationOptions& options)
+    : options_(options)
+  {
+  }
+
+  /// The removal of a hole's node, before the topology has it. Valid until the next call.
+  const RecordBuilder::Step& of(const TriangleTopology& topology, const Hole& hole,
+    const HoleTriangulation& filling, double error)
+  {
+    for (int i = 0; i < hole.triangleCount; ++i)
+    {
+      this->slots_[i] = triangleOf(hole.corners[i]);
+      const int corner = cornerOf(hole.corners[i]);
+      unsigned char* cell = this->oldCells_.data() + 3 * i;
+      cell[corner] = 0;
+      cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
+      cell[previousCorner(corner)] = static_cast<unsigned char>(i + 1 == hole.size ? 1 : i + 2);
+    }
+    const unsigned char* filled = filling.triangles.front().data();
+    for (int i = 0; i < 3 * filling.count; ++i)
+    {
+      this->newCells_[i] = static_cast<unsigned char>(filled[i] + 1);
+    }
+    if (this->options_.trackCellSources)
+    {
+      findCellSources(topology, hole, filling, this->sources_.data());
+    }
+    this->step_.node = hole.node;
+    this->step_.ring = hole.ring.data();
+    this->step_.ringSize = hole.size;
+    this->step_.oldCount = hole.triangleCount;
+    this->step_.newCount = filling.count;
+    this->step_.slots = this->slots_.data();
+    this->step_.oldCells = this->oldCells_.data();
+    this->step_.newCells = this->newCells_.data();
+    this->step_.sources = this->sources_.data();
+    this->step_.error =
+      this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * error : error;
+    return this->step_;
+  }
+
+private:
+  const HashQueueDecimationOptions& options_;
+  RecordBuilder::Step step_;
+  std::array<unsigned char, kMaximumPatchCells> sources_;
+  std::array<Index, kMaximumPatchCells> slots_;
+  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
+  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
+};
+
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,651 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file parallel_decimation.h
+/// @brief Hash queue decimation by several threads, with a result that does not depend on them.
+///
+/// In rounds. The mesh is cut into parts (mesh_parts.h). A node whose neighbours all are in its
+/// part is free: its removal changes nothing that another part reads. The other nodes, at the
+/// seams, stay for this round. Each part removes its free nodes as the serial algorithm would, with
+/// a queue of its own, up to a cost that is the same for all parts and rises from round to round.
+/// The parts' steps are then merged by their costs. The steps behind the goal are undone. A few
+/// nodes, or those that the rounds cannot get any further, are left to the serial algorithm.
+///
+/// Parts, limits and the order of the steps are computed from the mesh and from counts alone, so
+/// the number of threads and their luck do not matter.
+
+#ifndef UNDECIMATE_CORE_PARALLEL_DECIMATION_H
+#define UNDECIMATE_CORE_PARALLEL_DECIMATION_H
+
+#include "mesh_parts.h"
+#include "monitor.h"
+#include "node_removal.h"
+#include "threads.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace undecimate
+{
+
+/// @tparam CriterionType see deviation.h and mean_edge_criterion.h
+template <typename CriterionType>
+class ParallelDecimation
+{
+public:
+  ParallelDecimation(TriangleTopology& topology, CriterionType& criterion,
+    const HashQueueDecimationOptions& options, const Goal& goal, Monitor& monitor, Threads& threads)
+    : topology_(topology)
+    , options_(options)
+    , goal_(goal)
+    , monitor_(monitor)
+    , threads_(threads)
+    , trianglesLeft_(topology.triangleCount())
+    , nodesLeft_(topology.nodeCount())
+    , planned_(std::max<Index>(1, this->trianglesLeft_ - goal.triangles))
+  {
+    for (int thread = 0; thread < this->threads_.count(); ++thread)
+    {
+      this->workers_.push_back(std::make_unique<Worker>(criterion.forThread(), options));
+    }
+  }
+
+  Status run(HashQueueDecimationResult& result)
+  {
+    RecordBuilder builder(this->nodesLeft_, this->trianglesLeft_, this->options_.trackCellSources,
+      this->goal_.plannedSteps(this->nodesLeft_, this->trianglesLeft_));
+    MeshParts parts(this->topology_, this->threads_);
+    if (!this->evaluateAll(parts))
+    {
+      return Status::Cancelled;
+    }
+    result.stopReason = StopReason::NoRemovableNode;
+    Index limit = 0;
+    double yield = 0.5; // removals a candidate below the limit, at first a guess
+    bool stuck = false;
+    std::vector<Part> done; // in the last round; not in the record yet
+    for (int round = 0; !this->isAtGoal(result.stopReason); ++round)
+    {
+      const Index candidates = this->countCandidates();
+      bool alone = stuck || candidates < kFewNodes;
+      if (!alone)
+      {
+        parts.cut(round, std::clamp(this->nodesLeft_ / kWantedParts, kSmallestPart, kLargestPart));
+        alone = parts.count() == 1;
+      }
+      if (alone)
+      {
+        merge(done, builder);
+        parts.join();
+        if (!this->removeAlone(parts, builder, result.stopReason))
+        {
+          return Status::Cancelled;
+        }
+        done.clear();
+        break;
+      }
+      const double needed = this->goal_.plannedSteps(this->nodesLeft_, this->trianglesLeft_);
+      const double below =
+        std::min(kRoundShare * candidates, std::max(kOvershoot * needed / yield, 1.0));
+      limit = std::max(limit, this->costOf(below));
+      if (!this->removeInParts(parts, limit, builder, done))
+      {
+        return Status::Cancelled;
+      }
+      Index removed = 0;
+      Index cellsGone = 0;
+      Index moved = 0;
+      for (const Part& part : done)
+      {
+        removed += part.steps.left();
+        cellsGone += part.cellsGone;
+        moved += part.steps.left() + part.raised;
+      }
+      yield = std::clamp(removed / below, 0.1, 1.0);
+      stuck = moved < candidates / kFewMoved;
+      if (this->goal_.isReached(
+            this->nodesLeft_ - removed, this->trianglesLeft_ - cellsGone, result.stopReason))
+      {
+        break;
+      }
+      this->nodesLeft_ -= removed;
+      this->trianglesLeft_ -= cellsGone;
+    }
+    merge(done, builder,
+      [&](const RecordSteps& steps)
+      {
+        const bool more = !this->isAtGoal(result.stopReason);
+        this->nodesLeft_ -= more ? 1 : 0;
+        this->trianglesLeft_ -= more ? steps.nextCellsGone() : 0;
+        return more;
+      });
+    this->undoRest(done);
+    if (result.stopReason == StopReason::NoRemovableNode && this->tooCostly_)
+    {
+      result.stopReason = StopReason::MaximumError;
+    }
+    release(done);
+    result.error = builder.error();
+    this->workers_.clear();
+    release(this->places_);
+    this->topology_.freeNodes();
+    result.record = builder.finish(
+      [this](Index triangle, Index* corners)
+      {
+        const auto& nodes = this->topology_.triangle(triangle).nodes;
+        std::copy(nodes.begin(), nodes.end(), corners);
+      },
+      result.baseTriangles, &this->threads_);
+    return this->monitor_.update(1.0) ? Status::Ok : Status::Cancelled;
+  }
+
+private:
+  // Places of nodes that are in no queue: the interval of their cost, kNone if they wait for a
+  // neighbour to go or are kept for good, or
+  static constexpr Index kGone = kNone - 1;
+
+  // Nodes of a part: so many that the seams are short and so few that a part stays in a core's
+  // cache; but parts for many cores as long as they are not tiny.
+  static constexpr Index kLargestPart = 1 << 14;
+  static constexpr Index kSmallestPart = 1 << 10;
+  static constexpr Index kWantedParts = 64;
+
+  // So few candidates are left to the serial algorithm.
+  static constexpr Index kFewNodes = 1 << 11;
+
+  // Share of the candidates that a round takes on: the cheapest. A part removes at most kPartShare
+  // of its own, since the seams stay behind.
+  static constexpr double kRoundShare = 0.5;
+  static constexpr double kPartShare = 0.5;
+
+  // The last round aims at so many times the removals that are needed.
+  static constexpr double kOvershoot = 1.1;
+
+  // A round that does less than this fraction of its candidates any good is the last one.
+  static constexpr Index kFewMoved = 64;
+
+  // Share of the progress that the first evaluation gets.
+  static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
+
+  struct NodeLinks
+  {
+    TriangleTopology* topology;
+    QueueLinks& operator()(Index node) const { return this->topology->node(node).links; }
+  };
+  using Queue = HashQueueOn<NodeLinks>;
+
+  // What a thread has of its own.
+  struct Worker
+  {
+    CriterionType criterion;
+    std::unique_ptr<Queue> queue;
+    std::vector<Index> counts; // of candidates by interval, over the parts it has done
+    std::vector<Index> nodes;  // to be queued
+    Hole hole;
+    HoleTriangulation filling;
+    RecordedStep step;
+
+    Worker(CriterionType criterion_, const HashQueueDecimationOptions& options)
+      : criterion(std::move(criterion_))
+      , step(options)
+    {
+    }
+  };
+
+  // What a part has done in a round.
+  struct Part
+  {
+    RecordSteps steps;
+    std::vector<Index> costs; // interval of the largest cost up to each step
+    Index raised = 0;         // nodes that were found to cost more, or that cannot go
+    Index cellsGone = 0;
+  };
+
+  bool isAtGoal(StopReason& reason) const
+  {
+    return this->goal_.isReached(this->nodesLeft_, this->trianglesLeft_, reason);
+  }
+
+  // Ask the monitor, in the caller's thread, or whether it was asked to stop.
+  bool mayGoOn(int thread, double fraction)
+  {
+    if (thread != 0)
+    {
+      return !this->monitor_.cancelled();
+    }
+    // Steps that are undone, and those at the boundary, were counted as more than they are.
+    this->progress_ = std::max(this->progress_, fraction);
+    return this->monitor_.update(this->progress_);
+  }
+
+  bool evaluateAll(MeshParts& parts)
+  {
+    std::vector<float> costs(this->topology_.nodeCount(), -1.0F);
+    this->places_.assign(this->topology_.nodeCount(), kNone);
+    std::atomic<Index> done{ 0 };
+    this->threads_.run(parts.count(),
+      [&](Index part, int thread)
+      {
+        Index count = 0;
+        for (const Index* node = parts.begin(part); node != parts.end(part); ++node, ++count)
+        {
+          if ((count & 1023) == 0 &&
+            !this->mayGoOn(thread, kEvaluationShare * (done + count) / this->topology_.nodeCount()))
+          {
+            return;
+          }
+          double cost = 0.0;
+          if (!this->topology_.node(*node).kept &&
+            this->workers_[thread]->criterion.evaluate(*node, cost))
+          {
+            costs[*node] = static_cast<float>(cost);
+          }
+        }
+        done += count;
+      });
+    if (this->monitor_.cancelled())
+    {
+      return false;
+    }
+    this->intervals_ = std::make_unique<Intervals>(this->options_, costs);
+    for (auto& worker : this->workers_)
+    {
+      worker->queue =
+        std::make_unique<Queue>(NodeLinks{ &this->topology_ }, this->intervals_->count());
+      worker->counts.assign(this->intervals_->count(), 0);
+    }
+    this->threads_.run(parts.count(),
+      [&](Index part, int thread)
+      {
+        for (const Index* node = parts.begin(part); node != parts.end(part); ++node)
+        {
+          if (costs[*node] >= 0.0F)
+          {
+            const Index interval = this->intervals_->of(costs[*node]);
+            this->places_[*node] = interval;
+            ++this->workers_[thread]->counts[interval];
+          }
+        }
+      });
+    return true;
+  }
+
+  // All candidates, by interval in the first worker's counts.
+  Index countCandidates()
+  {
+    std::vector<Index>& counts = this->workers_.front()->counts;
+    for (std::size_t i = 1; i < this->workers_.size(); ++i)
+    {
+      std::transform(counts.begin(), counts.end(), this->workers_[i]->counts.begin(),
+        counts.begin(), std::plus<Index>());
+      std::fill(this->workers_[i]->counts.begin(), this->workers_[i]->counts.end(), 0);
+    }
+    Index sum = 0;
+    for (const Index count : counts)
+    {
+      sum += count;
+    }
+    return sum;
+  }
+
+  // The interval up to which there are so many candidates. They are to be counted anew afterwards.
+  Index costOf(double candidates)
+  {
+    std::vector<Index>& counts = this->workers_.front()->counts;
+    Index interval = 0;
+    double sum = 0.0;
+    while (interval + 1 < this->intervals_->count() && (sum += counts[interval]) < candidates)
+    {
+      ++interval;
+    }
+    return interval;
+  }
+
+  // A round. The steps of the round before are taken over into the record meanwhile, and `done` has
+  // those of this one afterwards.
+  bool removeInParts(MeshParts& parts, Index limit, RecordBuilder& builder, std::vector<Part>& done)
+  {
+    std::vector<Index>& counts = this->workers_.front()->counts;
+    std::fill(counts.begin(), counts.end(), 0);
+    std::vector<Part> now;
+    for (Index part = 0; part < parts.count(); ++part)
+    {
+      now.push_back({ RecordSteps(this->options_.trackCellSources), {} });
+    }
+    std::atomic<Index> gone{ 0 };
+    this->threads_.run(parts.count() + 1,
+      [&](Index job, int thread)
+      {
+        if (job == 0)
+        {
+          merge(done, builder);
+          release(done);
+          return;
+        }
+        const Index part = job - 1;
+        Part& here = now[part];
+        Worker& worker = *this->workers_[thread];
+        worker.criterion.setTrianglesLeft(this->trianglesLeft_);
+        const Index queued = this->fill(parts, part, worker, limit);
+        const Index most = std::max<Index>(1, static_cast<Index>(kPartShare * queued));
+        here.raised = this->empty(
+          parts, part, worker, limit,
+          [&](std::uint64_t turn)
+          {
+            return here.steps.left() < most &&
+              ((turn & 255) != 0 ||
+                this->mayGoOn(thread, this->fractionDone(gone + here.cellsGone)));
+          },
+          [&](const RecordBuilder::Step& step, Index interval)
+          {
+            here.steps.append(step);
+            here.costs.push_back(
+              here.costs.empty() ? interval : std::max(here.costs.back(), interval));
+            here.cellsGone += step.oldCount - step.newCount;
+          });
+        gone += here.cellsGone;
+        this->count(parts, part, worker);
+      });
+    done.swap(now);
+    return !this->monitor_.cancelled();
+  }
+
+  // As the serial algorithm: all nodes, whatever they cost, to the goal.
+  bool removeAlone(MeshParts& parts, RecordBuilder& builder, StopReason& reason)
+  {
+    Worker& worker = *this->workers_.front();
+    worker.criterion.setTrianglesLeft(this->trianglesLeft_);
+    const Index limit = this->intervals_->count();
+    this->fill(parts, 0, worker, limit);
+    this->empty(
+      parts, 0, worker, limit,
+      [&](std::uint64_t turn)
+      {
+        return !this->isAtGoal(reason) &&
+          ((turn & 255) != 0 || this->mayGoOn(0, this->fractionDone(0)));
+      },
+      [&](const RecordBuilder::Step& step, Index /*interval*/)
+      {
+        builder.append(step);
+        --this->nodesLeft_;
+        this->trianglesLeft_ -= step.oldCount - step.newCount;
+      });
+    return !this->monitor_.cancelled();
+  }
+
+  double fractionDone(Index trianglesGone) const
+  {
+    const double gone = this->topology_.triangleCount() - this->trianglesLeft_ + trianglesGone;
+    return std::min(0.99, kEvaluationShare + (1.0 - kEvaluationShare) * gone / this->planned_);
+  }
+
+  // Queue the nodes of a part that are cheap enough and may go in this round. Returns their number.
+  Index fill(MeshParts& parts, Index part, Worker& worker, Index limit)
+  {
+    std::vector<Index>& nodes = worker.nodes;
+    nodes.clear();
+    for (const Index* node = parts.begin(part); node != parts.end(part); ++node)
+    {
+      const Index place = this->places_[*node];
+      if (place >= 0 && place <= limit)
+      {
+        nodes.push_back(*node);
+      }
+    }
+    const std::size_t count = nodes.size();
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      constexpr std::size_t kAhead = 4; // stages of the prefetch
+      this->topology_.prefetchNode(nodes[std::min(i + 3 * kAhead, count - 1)]);
+      this->topology_.prefetchTriangle(nodes[std::min(i + 2 * kAhead, count - 1)]);
+      this->topology_.prefetchNeighbours(nodes[std::min(i + kAhead, count - 1)]);
+      if (this->isFree(parts, part, nodes[i]))
+      {
+        worker.queue->insert(nodes[i], this->places_[nodes[i]]);
+      }
+    }
+    return worker.queue->size();
+  }
+
+  // Whether a node may go in this round: all its neighbours are in the part. Removals do not change
+  // that: a free node's new neighbours were neighbours of its old ones in the part, and a node at a
+  // seam keeps its neighbour behind the seam, which may not go either.
+  bool isFree(const MeshParts& parts, Index part, Index node) const
+  {
+    return this->topology_.allAround(
+      node, [&](Index neighbour) { return parts.has(part, neighbour); });
+  }
+
+  // Remove nodes until the queue is empty or `goOn` says no; what is left in the queue waits for
+  // the next round. Returns the number of nodes that turned out not to be below the limit.
+  template <typename GoOn, typename Append>
+  Index empty(const MeshParts& parts, Index part, Worker& worker, Index limit, const GoOn& goOn,
+    const Append& append)
+  {
+    Queue& queue = *worker.queue;
+    Index raised = 0;
+    for (std::uint64_t turn = 0; goOn(turn); ++turn)
+    {
+      const Index interval = queue.lowestInterval();
+      const Index node = queue.pop();
+      if (node == kNone)
+      {
+        return raised;
+      }
+      Index& place = this->places_[node];
+      place = kNone;
+      double cost = 0.0;
+      if (!worker.criterion.retriangulate(node, worker.hole, worker.filling, cost))
+      {
+        ++raised;
+        continue;
+      }
+      const auto mustWait = [&]
+      {
+        const Index current = this->intervals_->of(cost);
+        if (current > limit)
+        {
+          place = current;
+          ++raised;
+          return true;
+        }
+        if (current > interval && current > queue.lowestInterval() && !queue.empty())
+        {
+          queue.insert(node, current);
+          return true;
+        }
+        return false;
+      };
+      if (mustWait())
+      {
+        continue;
+      }
+      double error = cost;
+      if constexpr (CriterionType::kLazy)
+      {
+        error = worker.criterion.confirm(worker.hole, worker.filling, cost);
+        if (mustWait())
+        {
+          continue;
+        }
+      }
+      if (error > this->goal_.error)
+      {
+        this->tooCostly_ = true;
+        ++raised;
+        continue;
+      }
+      append(worker.step.of(this->topology_, worker.hole, worker.filling, error),
+        this->intervals_->of(cost));
+      this->topology_.replace(worker.hole, worker.filling);
+      worker.criterion.removed(worker.hole, worker.filling);
+      place = kGone;
+      this->reevaluate(parts, part, worker, interval, limit);
+    }
+    for (;;)
+    {
+      const Index interval = queue.lowestInterval();
+      const Index node = queue.pop();
+      if (node == kNone)
+      {
+        return raised;
+      }
+      this->places_[node] = interval;
+    }
+  }
+
+  void reevaluate(const MeshParts& parts, Index part, Worker& worker, Index interval, Index limit)
+  {
+    Queue& queue = *worker.queue;
+    for (int i = 0; i < worker.hole.size; ++i)
+    {
+      const Index node = worker.hole.ring[i];
+      if (this->topology_.node(node).kept)
+      {
+        continue;
+      }
+      const bool queued = queue.contains(node);
+      Index place = this->places_[node];
+      if constexpr (CriterionType::kLazy)
+      {
+        // Evaluated when its turn comes; one that waits outside gets a new chance.
+        place = queued ? queue.interval(node) : place == kNone ? interval : place;
+      }
+      else
+      {
+        double cost = 0.0;
+        if (!worker.criterion.evaluate(node, cost))
+        {
+          continue;
+        }
+        place = this->intervals_->of(cost);
+      }
+      if (place <= limit && (queued || this->isFree(parts, part, node)))
+      {
+        queue.insert(node, place);
+      }
+      else
+      {
+        queue.remove(node);
+        this->places_[node] = place;
+      }
+    }
+  }
+
+  // Forget the nodes of a part that went, and count the candidates for the next round.
+  void count(MeshParts& parts, Index part, Worker& worker)
+  {
+    Index* left = parts.begin(part);
+    for (const Index* node = parts.begin(part); node != parts.end(part); ++node)
+    {
+      const Index place = this->places_[*node];
+      if (place != kGone)
+      {
+        *left++ = *node;
+        if (place != kNone)
+        {
+          ++worker.counts[place];
+        }
+      }
+    }
+    parts.shorten(part, left);
+  }
+
+  // Take the steps of all parts over into the record by their costs, as long as `mayTake` the next
+  // one. Costs that are equal, to the width of an interval, take turns, so that they spread over
+  // the mesh.
+  template <typename MayTake>
+  static void merge(std::vector<Part>& parts, RecordBuilder& builder, const MayTake& mayTake)
+  {
+    constexpr int kTurn = 8;                    // steps
+    using Turn = std::pair<Index, std::size_t>; // interval of the next cost, part
+    std::priority_queue<Turn, std::vector<Turn>, std::greater<Turn>> turns;
+    const auto intervalOf = [&](std::size_t part)
+    {
+      const Part& here = parts[part];
+      return here.costs[here.costs.size() - static_cast<std::size_t>(here.steps.left())];
+    };
+    for (std::size_t part = 0; part < parts.size(); ++part)
+    {
+      if (parts[part].steps.left() > 0)
+      {
+        turns.push({ intervalOf(part), part });
+      }
+    }
+    std::vector<std::size_t> equals;
+    while (!turns.empty())
+    {
+      const Index interval = turns.top().first;
+      for (; !turns.empty() && turns.top().first == interval; turns.pop())
+      {
+        equals.push_back(turns.top().second);
+      }
+      while (!equals.empty())
+      {
+        std::size_t stay = 0;
+        for (const std::size_t part : equals)
+        {
+          RecordSteps& steps = parts[part].steps;
+          Index next = interval;
+          for (int i = 0; i < kTurn && next == interval; ++i)
+          {
+            if (!mayTake(steps))
+            {
+              return;
+            }
+            builder.takeNext(steps);
+            next = steps.left() > 0 ? intervalOf(part) : kNone;
+          }
+          if (next == interval)
+          {
+            equals[stay++] = part;
+          }
+          else if (next != kNone)
+          {
+            turns.push({ next, part });
+          }
+        }
+        equals.resize(stay);
+      }
+    }
+  }
+
+  static void merge(std::vector<Part>& parts, RecordBuilder& builder)
+  {
+    merge(parts, builder, [](const RecordSteps& /*steps*/) { return true; });
+  }
+
+  void undoRest(std::vector<Part>& parts)
+  {
+    this->threads_.run(static_cast<Index>(parts.size()),
+      [&](Index part, int /*thread*/)
+      {
+        parts[part].steps.undoRest(
+          [this](Index triangle) { return this->topology_.triangle(triangle).nodes.data(); });
+      });
+  }
+
+  TriangleTopology& topology_;
+  const HashQueueDecimationOptions& options_;
+  const Goal& goal_;
+  Monitor& monitor_;
+  Threads& threads_;
+  Index trianglesLeft_;
+  Index nodesLeft_;
+  Index planned_; // triangles to go in all
+  double progress_ = 0.0;
+  std::unique_ptr<Intervals> intervals_;
+  std::vector<Index> places_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::atomic<bool> tooCostly_{ false };
+};
+
+} // namespace undecimate
+
+#endif

@@ -1,0 +1,436 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Decimation by several threads: the same result for any number of them, and all that holds for
+// the serial one.
+
+#include "testing/decimated.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace undecimate
+{
+namespace
+{
+
+using testing::Decimated;
+using testing::Mesh;
+
+void expectSame(const HashQueueDecimationResult& a, const HashQueueDecimationResult& b)
+{
+  EXPECT_EQ(a.record.nodeOrder, b.record.nodeOrder);
+  EXPECT_EQ(a.record.cellOrder, b.record.cellOrder);
+  EXPECT_EQ(a.record.stepShapes, b.record.stepShapes);
+  EXPECT_EQ(a.record.stepErrors, b.record.stepErrors);
+  EXPECT_EQ(a.record.patches, b.record.patches);
+  EXPECT_EQ(a.record.shapeOffsets, b.record.shapeOffsets);
+  EXPECT_EQ(a.record.shapes, b.record.shapes);
+  EXPECT_EQ(a.record.baseSources, b.record.baseSources);
+  EXPECT_EQ(a.record.lostSources, b.record.lostSources);
+  EXPECT_EQ(a.baseTriangles, b.baseTriangles);
+  EXPECT_EQ(a.stopReason, b.stopReason);
+  EXPECT_EQ(a.error, b.error);
+}
+
+Mesh field(int n)
+{
+  return testing::heightField(n, n,
+    [n](double x, double y)
+    { return 0.05 * n * (std::sin(9.0 * x / n) * std::cos(7.0 * y / n) + x * y / (n * n)); });
+}
+
+std::vector<float> valuesOf(const Mesh& mesh)
+{
+  return testing::valuesOn(
+    mesh, [](double x, double y, double z) { return std::sin(0.1 * x) + 0.2 * y * z; });
+}
+
+HashQueueDecimationOptions parallelOptions(Criterion criterion, int threads = 2)
+{
+  HashQueueDecimationOptions options;
+  options.criterion = criterion;
+  options.parallel = true;
+  options.threads = threads;
+  return options;
+}
+
+class Parallel : public ::testing::TestWithParam<Criterion>
+{
+};
+
+TEST_P(Parallel, TheNumberOfThreadsDoesNotMatter)
+{
+  const Mesh mesh = field(90);
+  const std::vector<float> values = valuesOf(mesh);
+  HashQueueDecimationOptions options = parallelOptions(GetParam(), 1);
+  options.arrays = { testing::arrayOf(values) };
+  options.targetReduction = 0.85;
+  options.trackCellSources = true;
+  const Decimated one(mesh, options);
+  ASSERT_GT(one.steps(), 5000);
+  for (const int threads : { 2, 3, 7, 0, 2 })
+  {
+    SCOPED_TRACE(threads);
+    options.threads = threads;
+    expectSame(one.result, Decimated(mesh, options).result);
+  }
+}
+
+TEST_P(Parallel, StopsWhereTheSerialOneDoes)
+{
+  const Mesh mesh = field(80);
+  const std::vector<float> values = valuesOf(mesh);
+  HashQueueDecimationOptions options = parallelOptions(GetParam());
+  options.arrays = { testing::arrayOf(values) };
+  options.targetReduction = 1.0;
+  options.targetNodes = 777;
+  Decimated nodes(mesh, options);
+  EXPECT_EQ(nodes.result.record.baseNodeCount, 777);
+  EXPECT_EQ(nodes.result.stopReason, StopReason::TargetNodes);
+  EXPECT_EQ(nodes.result.error, nodes.cursor.error());
+
+  options.targetNodes = 0;
+  options.targetTriangles = 3001;
+  Decimated triangles(mesh, options);
+  EXPECT_LE(triangles.result.record.baseCellCount, 3001);
+  EXPECT_GE(triangles.result.record.baseCellCount, 3000);
+  EXPECT_EQ(triangles.result.stopReason, StopReason::TargetTriangles);
+
+  options.targetTriangles = 0;
+  options.targetReduction = 0.0;
+  Decimated none(mesh, options);
+  EXPECT_EQ(none.steps(), 0);
+  EXPECT_EQ(none.result.stopReason, StopReason::TargetReduction);
+}
+
+TEST_P(Parallel, MaximumErrorIsKept)
+{
+  const Mesh mesh = field(80);
+  const std::vector<float> values = valuesOf(mesh);
+  HashQueueDecimationOptions options = parallelOptions(GetParam());
+  options.arrays = { testing::arrayOf(values) };
+  options.targetReduction = 1.0;
+  options.maximumError = GetParam() == Criterion::AngleToXYPlane ? 8.0
+    : GetParam() == Criterion::Deviation                         ? 2e-3
+                                                                 : 0.02;
+  Decimated parallel(mesh, options);
+  options.parallel = false;
+  Decimated serial(mesh, options);
+  EXPECT_EQ(parallel.result.stopReason, StopReason::MaximumError);
+  EXPECT_LE(parallel.result.error, options.maximumError * (1.0 + 1e-6));
+  const double ratio = static_cast<double>(parallel.result.record.baseNodeCount) /
+    static_cast<double>(serial.result.record.baseNodeCount);
+  // The two means are no distances: another order changes more.
+  const double most = GetParam() == Criterion::Deviation ? 1.05 : 1.2;
+  EXPECT_GT(ratio, 1.0 / most);
+  EXPECT_LT(ratio, most);
+}
+
+TEST_P(Parallel, AllThatCanGoGoes)
+{
+  const Mesh mesh = field(60);
+  const std::vector<float> values = valuesOf(mesh);
+  HashQueueDecimationOptions options = parallelOptions(GetParam());
+  options.arrays = { testing::arrayOf(values) };
+  options.targetReduction = 1.0;
+  Decimated parallel(mesh, options);
+  EXPECT_EQ(parallel.result.stopReason, StopReason::NoRemovableNode);
+  EXPECT_LT(parallel.result.record.baseNodeCount, 100);
+  parallel.cursor.moveTo(parallel.steps());
+  EXPECT_TRUE(testing::isOriginal(parallel.cursor, mesh));
+}
+
+TEST_P(Parallel, SmallMeshesAreLeftToTheSerialAlgorithm)
+{
+  const Mesh mesh = field(40);
+  const std::vector<float> values = valuesOf(mesh);
+  HashQueueDecimationOptions options = parallelOptions(GetParam(), 3);
+  options.arrays = { testing::arrayOf(values) };
+  const Decimated parallel(mesh, options);
+  options.parallel = false;
+  expectSame(parallel.result, Decimated(mesh, options).result);
+}
+
+TEST_P(Parallel, CancelIsHeard)
+{
+  const Mesh mesh = field(80);
+  const std::vector<float> values = valuesOf(mesh);
+  HashQueueDecimationOptions options = parallelOptions(GetParam(), 3);
+  options.arrays = { testing::arrayOf(values) };
+  options.targetReduction = 0.99;
+  for (const double when : { 0.0, 0.1, 0.5, 0.9 })
+  {
+    Monitor monitor([when](double fraction) { return fraction < when; });
+    HashQueueDecimationResult result;
+    EXPECT_EQ(decimate(mesh.view(), options, monitor, result).status, Status::Cancelled) << when;
+    EXPECT_TRUE(result.record.nodeOrder.empty());
+  }
+  Monitor monitor(
+    [](double fraction) -> bool
+    {
+      if (fraction > 0.3)
+      {
+        throw std::runtime_error("the window is closed");
+      }
+      return true;
+    });
+  HashQueueDecimationResult result;
+  const Outcome outcome = decimate(mesh.view(), options, monitor, result);
+  EXPECT_EQ(outcome.status, Status::Cancelled);
+  EXPECT_NE(outcome.message.find("the window is closed"), std::string::npos) << outcome.message;
+}
+
+TEST_P(Parallel, ProgressRisesToOne)
+{
+  const Mesh mesh = field(80);
+  const std::vector<float> values = valuesOf(mesh);
+  HashQueueDecimationOptions options = parallelOptions(GetParam());
+  options.arrays = { testing::arrayOf(values) };
+  std::vector<double> told;
+  Monitor monitor(
+    [&told](double fraction)
+    {
+      told.push_back(fraction);
+      return true;
+    });
+  HashQueueDecimationResult result;
+  ASSERT_TRUE(decimate(mesh.view(), options, monitor, result));
+  EXPECT_GT(told.size(), 5U);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Criteria, Parallel,
+  ::testing::Values(Criterion::Deviation, Criterion::ScalarDifference, Criterion::AngleToXYPlane));
+
+struct Kind
+{
+  const char* name;
+  Mesh (*make)(std::mt19937& random);
+};
+
+Mesh randomField(std::mt19937& random)
+{
+  Mesh mesh = testing::hills(70, 60);
+  testing::flipEdges(mesh, random, true);
+  return mesh;
+}
+
+Mesh randomTorus(std::mt19937& random)
+{
+  Mesh mesh = testing::torus(80, 45);
+  testing::flipEdges(mesh, random, false);
+  return mesh;
+}
+
+// With a sixteenth of its triangles missing.
+Mesh randomSieve(std::mt19937& random)
+{
+  const Mesh whole = randomTorus(random);
+  Mesh mesh = whole;
+  mesh.triangles.clear();
+  for (Index t = 0; t < whole.triangleCount(); ++t)
+  {
+    if (random() % 16 != 0)
+    {
+      mesh.addTriangle(
+        whole.triangles[3 * t], whole.triangles[3 * t + 1], whole.triangles[3 * t + 2]);
+    }
+  }
+  return mesh;
+}
+
+class ParallelMeshes : public ::testing::TestWithParam<Kind>
+{
+};
+
+TEST_P(ParallelMeshes, KeepTheirPropertiesAtEveryLevel)
+{
+  for (unsigned seed = 1; seed <= 4; ++seed)
+  {
+    SCOPED_TRACE(std::string(GetParam().name) + ", seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const Mesh mesh = testing::shuffled(GetParam().make(random), random);
+    ASSERT_TRUE(testing::isManifoldAndOriented(mesh.triangles));
+    const int euler = testing::eulerCharacteristic(mesh.triangles);
+    const std::vector<float> values = valuesOf(mesh);
+    HashQueueDecimationOptions options =
+      parallelOptions(seed % 2 == 0 ? Criterion::Deviation : Criterion::ScalarDifference);
+    options.targetReduction = 1.0;
+    options.arrays = { testing::arrayOf(values) };
+    options.intervalSpacing =
+      seed % 2 == 0 ? IntervalSpacing::Logarithmic : IntervalSpacing::Exponential;
+    options.trackCellSources = seed > 2;
+    options.preserveBoundary = seed == 3;
+    Decimated decimated(mesh, options);
+    options.parallel = false;
+    const Index serialSteps = Decimated(mesh, options).steps();
+    ASSERT_GT(decimated.steps(), 0.9 * serialSteps);
+    ASSERT_LT(decimated.steps(), 1.1 * serialSteps);
+    for (Index step = 0; step <= decimated.steps(); step += 1 + decimated.steps() / 12)
+    {
+      decimated.cursor.moveTo(step);
+      const std::vector<Index> triangles = testing::originalNumbers(decimated.cursor);
+      ASSERT_TRUE(testing::isManifoldAndOriented(triangles)) << "step " << step;
+      ASSERT_TRUE(testing::hasNoDegenerateOrRepeated(triangles)) << "step " << step;
+      ASSERT_EQ(testing::eulerCharacteristic(triangles), euler) << "step " << step;
+      if (options.preserveBoundary)
+      {
+        ASSERT_EQ(testing::boundaryEdges(triangles), testing::boundaryEdges(mesh.triangles));
+      }
+    }
+    decimated.cursor.moveTo(decimated.steps());
+    ASSERT_TRUE(testing::isOriginal(decimated.cursor, mesh));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ParallelMeshes,
+  ::testing::Values(
+    Kind{ "Field", randomField }, Kind{ "Torus", randomTorus }, Kind{ "Sieve", randomSieve }),
+  [](const ::testing::TestParamInfo<Kind>& info) { return std::string(info.param.name); });
+
+// Of each level the error of the parallel decimation against the serial one.
+TEST(ParallelDeviation, IsAboutAsNearAsTheSerialOne)
+{
+  const Mesh mesh = field(120);
+  HashQueueDecimationOptions options = parallelOptions(Criterion::Deviation);
+  options.targetReduction = 0.98;
+  Decimated parallel(mesh, options);
+  options.parallel = false;
+  Decimated serial(mesh, options);
+  double sum = 0.0;
+  for (const double left : { 0.5, 0.2, 0.1, 0.05, 0.02 })
+  {
+    const Index nodes = static_cast<Index>(left * mesh.nodeCount());
+    parallel.cursor.moveTo(std::max(0, nodes - parallel.result.record.baseNodeCount));
+    serial.cursor.moveTo(std::max(0, nodes - serial.result.record.baseNodeCount));
+    const double ratio = parallel.cursor.error() / serial.cursor.error();
+    EXPECT_LT(ratio, 1.1) << left;
+    sum += std::log(ratio);
+  }
+  EXPECT_LT(std::exp(sum / 5.0), 1.04);
+}
+
+// All costs are equal; nodes must not go part by part.
+TEST(ParallelDeviation, FlatMeshesThinOutEvenly)
+{
+  const int n = 100;
+  const Mesh mesh = testing::flatGrid(n, n);
+  HashQueueDecimationOptions options = parallelOptions(Criterion::Deviation);
+  options.targetReduction = 0.75;
+  Decimated decimated(mesh, options);
+  EXPECT_LT(decimated.result.error, 1e-6);
+  std::array<int, 16> counts{};
+  for (const Index node : decimated.baseNodes())
+  {
+    ++counts[node / n / 25 * 4 + node % n / 25];
+  }
+  for (const int count : counts)
+  {
+    EXPECT_GT(count, 625 / 8) << "of 625 nodes";
+    EXPECT_LT(count, 625 / 2) << "of 625 nodes";
+  }
+}
+
+TEST(ParallelHostile, OddMeshesStayWhole)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Mesh plain = field(70);
+  std::vector<std::pair<const char*, Mesh>> meshes;
+  meshes.emplace_back("outlier", plain);
+  meshes.back().second.points[3] = 1e30;
+  meshes.emplace_back("NaN", plain);
+  for (Index i = 0; i < plain.nodeCount(); i += 97)
+  {
+    meshes.back().second.points[3 * i + i % 3] = nan;
+  }
+  meshes.emplace_back("all NaN", plain);
+  for (double& x : meshes.back().second.points)
+  {
+    x = nan;
+  }
+  meshes.emplace_back("one place", plain);
+  for (double& x : meshes.back().second.points)
+  {
+    x = 1.0;
+  }
+  meshes.emplace_back("too large for a double", plain);
+  for (double& x : meshes.back().second.points)
+  {
+    x = std::fmod(x, 2.0) < 1.0 ? -1e308 : 1e308;
+  }
+  meshes.emplace_back("repeated and degenerate triangles", plain);
+  for (Index t = 0; t < 300; t += 3)
+  {
+    const Index a = plain.triangles[3 * t];
+    meshes.back().second.addTriangle(a, plain.triangles[3 * t + 1], plain.triangles[3 * t + 2]);
+    meshes.back().second.addTriangle(a, a, plain.triangles[3 * t + 1]);
+    meshes.back().second.addTriangle(a, plain.triangles[3 * t + 1], plain.nodeCount() - 1 - a);
+  }
+  meshes.emplace_back("touching pieces", testing::tJoint(40));
+  meshes.back().second.append(plain);
+  meshes.emplace_back("no triangle", plain);
+  meshes.back().second.triangles.clear();
+  meshes.emplace_back("nothing", Mesh());
+  for (const Criterion criterion : { Criterion::Deviation, Criterion::ScalarDifference })
+  {
+    for (const auto& [name, mesh] : meshes)
+    {
+      SCOPED_TRACE(name);
+      const std::vector<float> values(mesh.nodeCount() + 1, 0.5F);
+      HashQueueDecimationOptions options = parallelOptions(criterion, 3);
+      options.arrays = { testing::arrayOf(values) };
+      options.targetReduction = 1.0;
+      Decimated decimated(mesh, options);
+      ASSERT_TRUE(testing::hasNoDegenerateOrRepeated(testing::originalNumbers(decimated.cursor)) ||
+        std::string(name) == "repeated and degenerate triangles");
+      decimated.cursor.moveTo(decimated.steps());
+      ASSERT_TRUE(testing::isOriginal(decimated.cursor, mesh));
+    }
+  }
+}
+
+TEST(ParallelHostile, QuadricIsRefused)
+{
+  const Mesh mesh = field(10);
+  Monitor monitor;
+  HashQueueDecimationResult result;
+  const Outcome outcome =
+    decimate(mesh.view(), parallelOptions(Criterion::Quadric), monitor, result);
+  EXPECT_EQ(outcome.status, Status::InvalidArgument);
+  EXPECT_NE(outcome.message.find("Quadric"), std::string::npos) << outcome.message;
+  EXPECT_NE(outcome.message.find("Parallel"), std::string::npos) << outcome.message;
+}
+
+TEST(ParallelHostile, KeptNodesStay)
+{
+  const Mesh mesh = field(70);
+  std::vector<unsigned char> keep(mesh.nodeCount(), 1);
+  for (Index i = 0; i < mesh.nodeCount(); i += 3)
+  {
+    keep[i] = 0;
+  }
+  TriangleMeshView view = mesh.view();
+  view.keep = keep.data();
+  HashQueueDecimationOptions options = parallelOptions(Criterion::Deviation);
+  options.targetReduction = 1.0;
+  const Decimated decimated(view, options);
+  EXPECT_GT(decimated.steps(), 1000);
+  for (const Index node : decimated.removed())
+  {
+    ASSERT_FALSE(keep[node]) << node;
+  }
+}
+
+} // namespace
+} // namespace undecimate
