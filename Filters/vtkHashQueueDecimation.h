@@ -134,6 +134,26 @@ public:
 
   ///@{
   /**
+   * Decimate by several threads. The mesh is decimated in parts whose seams move, so the result is
+   * another one than that of one thread, but about as good; it does not depend on the number of
+   * threads. Meshes of a few thousand points are left to one thread. Default is off.
+   */
+  vtkSetMacro(Parallel, vtkTypeBool);
+  vtkGetMacro(Parallel, vtkTypeBool);
+  vtkBooleanMacro(Parallel, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Number of threads with Parallel. 0 is as many as vtkSMPTools uses, or as many as the machine
+   * has cores where vtkSMPTools was built without threads. Default is 0.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
    * Cut quads, polygons and triangle strips of the input into triangles, which inherit their cell
    * data. Level 1 is then the triangulated input. Default is off: such cells are an error.
    */
@@ -160,6 +180,8 @@ protected:
   int Criterion;
   int IntervalSpacing;
   double IntervalNodes;
+  vtkTypeBool Parallel;
+  int NumberOfThreads;
   vtkTypeBool Triangulate = 0;
 
   vtkIdType NumberOfInputTriangles = 0;

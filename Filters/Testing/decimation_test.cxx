@@ -986,16 +986,40 @@ TEST(Decimation, FollowsAChangingInput)
   expectRoundTrip(filter.output(), mesh);
 }
 
+TEST(Decimation, ParallelDoesNotDependOnTheThreads)
+{
+  MeshOptions options;
+  options.rows = 71;
+  vtkSmartPointer<vtkPolyData> mesh = makeGrid(options);
+  Decimation filter;
+  filter->SetInputData(mesh);
+  filter->OriginalPointIdsOn();
+  filter->ParallelOn();
+  filter->SetNumberOfThreads(1);
+  vtkNew<vtkPolyData> one;
+  one->DeepCopy(filter.output());
+  EXPECT_LT(one->GetNumberOfPoints(), mesh->GetNumberOfPoints() / 5);
+  for (const int threads : { 3, 0 })
+  {
+    filter->SetNumberOfThreads(threads);
+    vtkPolyData* other = filter.output();
+    EXPECT_EQ(originalIds(other), originalIds(one));
+    EXPECT_EQ(triangles(other), triangles(one));
+    expectRoundTrip(other, mesh);
+  }
+}
+
 TEST(Decimation, PrintsAllProperties)
 {
   vtkNew<vtkHashQueueDecimation> filter;
   filter->AddScalars("stress");
   std::ostringstream text;
   filter->Print(text);
-  for (const char* word : { "TargetReduction: 0.9", "TargetNodes: 0", "TargetTriangles: 0",
-         "MaximumError: 1", "Criterion: 0", "Scalars: stress", "ScalarWeight: 0.02",
-         "IntervalSpacing: 0", "IntervalNodes: 4", "PreserveBoundary: Off", "Triangulate: Off",
-         "OriginalPointIds: Off", "NumberOfInputNodes: 0", "StopReason:" })
+  for (const char* word :
+    { "TargetReduction: 0.9", "TargetNodes: 0", "TargetTriangles: 0", "MaximumError: 1",
+      "Criterion: 0", "Scalars: stress", "ScalarWeight: 0.02", "IntervalSpacing: 0",
+      "IntervalNodes: 4", "PreserveBoundary: Off", "Parallel: Off", "NumberOfThreads: 0",
+      "Triangulate: Off", "OriginalPointIds: Off", "NumberOfInputNodes: 0", "StopReason:" })
   {
     EXPECT_NE(text.str().find(word), std::string::npos) << word;
   }

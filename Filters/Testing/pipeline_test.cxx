@@ -500,6 +500,8 @@ TEST(Pipeline, TheDefaultsAreThoseOfTheCore)
   EXPECT_EQ(filter->GetIntervalSpacing(), static_cast<int>(options.intervalSpacing));
   EXPECT_EQ(filter->GetIntervalNodes(), options.intervalNodes);
   EXPECT_EQ(filter->GetPreserveBoundary() != 0, options.preserveBoundary);
+  EXPECT_EQ(filter->GetParallel() != 0, options.parallel);
+  EXPECT_EQ(filter->GetNumberOfThreads(), options.threads);
   EXPECT_EQ(filter->GetMaximumError(), 1.0) << "which stands for no limit";
   EXPECT_GT(options.maximumError, 1.0);
 }

@@ -150,6 +150,8 @@ def pipeline():
         IntervalSpacing="Exponential",
         IntervalNodes=7.5,
         PreserveBoundary=1,
+        Parallel=1,
+        NumberOfThreads=3,
         Triangulate=1,
         OriginalPointIds=1,
     )
