@@ -159,9 +159,10 @@ private:
   // So few candidates are left to the serial algorithm.
   static constexpr Index kFewNodes = 1 << 11;
 
-  // Share of the candidates that a round takes on: the cheapest. A part removes at most kPartShare
-  // of its own, since the seams stay behind.
-  static constexpr double kRoundShare = 0.5;
+  // Share of the candidates that a round takes on: the cheapest. The less, the nearer the order is
+  // to the serial one, and the more often the mesh is cut. A part removes at most kPartShare of its
+  // own, since the seams stay behind.
+  static constexpr double kRoundShare = CriterionType::kLazy ? 0.25 : 0.5;
   static constexpr double kPartShare = 0.5;
 
   // The last round aims at so many times the removals that are needed.
