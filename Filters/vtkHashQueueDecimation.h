@@ -136,7 +136,8 @@ public:
   /**
    * Decimate by several threads. The mesh is decimated in parts whose seams move, so the result is
    * another one than that of one thread, but about as good; it does not depend on the number of
-   * threads. Meshes of a few thousand points are left to one thread. Default is off.
+   * threads. Meshes of a few thousand points are left to one thread. Not with QUADRIC, which is an
+   * error. Default is off.
    */
   vtkSetMacro(Parallel, vtkTypeBool);
   vtkGetMacro(Parallel, vtkTypeBool);
