@@ -7,6 +7,7 @@
 #include "vector.h"
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace undecimate
@@ -16,6 +17,14 @@ namespace
 {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Loops are compiled for both numbers of lanes there are, so that no vector is left half empty: a
+// few, and whole blocks.
+constexpr int kFewLanes = 4;
+UNDECIMATE_INLINE int wholeBlocks(int lanes)
+{
+  return lanes & ~7;
+}
 
 UNDECIMATE_INLINE float larger(float a, float b)
 {
@@ -60,9 +69,11 @@ static_assert(kFar + 1 == kTriangleRows, "");
 
 } // namespace
 
-UNDECIMATE_VECTOR_CLONES
-void prepareTriangle(int lanes, const float* __restrict__ a, const float* __restrict__ b,
-  const float* __restrict__ c, float* __restrict__ triangle)
+namespace
+{
+
+UNDECIMATE_INLINE void prepareTriangleAt(int lanes, const float* __restrict__ a,
+  const float* __restrict__ b, const float* __restrict__ c, float* __restrict__ triangle)
 {
   float* __restrict__ normalRows = triangle + kNormalRow * lanes;
   for (int i = 0; i < lanes; ++i)
@@ -98,6 +109,22 @@ void prepareTriangle(int lanes, const float* __restrict__ a, const float* __rest
   }
 }
 
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+void prepareTriangle(int lanes, const float* __restrict__ a, const float* __restrict__ b,
+  const float* __restrict__ c, float* __restrict__ triangle)
+{
+  if (lanes == kFewLanes)
+  {
+    prepareTriangleAt(kFewLanes, a, b, c, triangle);
+  }
+  else
+  {
+    prepareTriangleAt(wholeBlocks(lanes), a, b, c, triangle);
+  }
+}
+
 namespace
 {
 
@@ -126,8 +153,10 @@ UNDECIMATE_INLINE float squaredDistance(
 
 } // namespace
 
-UNDECIMATE_VECTOR_CLONES
-void minimumDistances(int lanes, const float* __restrict__ triangle,
+namespace
+{
+
+UNDECIMATE_INLINE void minimumDistancesAt(int lanes, const float* __restrict__ triangle,
   const float* __restrict__ point, float* __restrict__ squares)
 {
   for (int i = 0; i < lanes; ++i)
@@ -135,6 +164,22 @@ void minimumDistances(int lanes, const float* __restrict__ triangle,
     float sides[3];
     const float square = squaredDistance(triangle, lanes, i, at(point, lanes, i), sides);
     squares[i] = smaller(squares[i], square);
+  }
+}
+
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+void minimumDistances(int lanes, const float* __restrict__ triangle,
+  const float* __restrict__ point, float* __restrict__ squares)
+{
+  if (lanes == kFewLanes)
+  {
+    minimumDistancesAt(kFewLanes, triangle, point, squares);
+  }
+  else
+  {
+    minimumDistancesAt(wholeBlocks(lanes), triangle, point, squares);
   }
 }
 
@@ -183,9 +228,11 @@ void minimumDistances(int lanes, const float* __restrict__ triangle,
   }
 }
 
-UNDECIMATE_VECTOR_CLONES
-void maximumDistanceToEdge(int lanes, const float* __restrict__ a, const float* __restrict__ b,
-  const float* __restrict__ point, float* __restrict__ squares)
+namespace
+{
+
+UNDECIMATE_INLINE void maximumDistanceToEdgeAt(int lanes, const float* __restrict__ a,
+  const float* __restrict__ b, const float* __restrict__ point, float* __restrict__ squares)
 {
   for (int i = 0; i < lanes; ++i)
   {
@@ -200,13 +247,47 @@ void maximumDistanceToEdge(int lanes, const float* __restrict__ a, const float* 
   }
 }
 
+} // namespace
+
 UNDECIMATE_VECTOR_CLONES
-void subtract(int lanes, int rows, const float* __restrict__ a, const float* __restrict__ b,
-  float* __restrict__ difference)
+void maximumDistanceToEdge(int lanes, const float* __restrict__ a, const float* __restrict__ b,
+  const float* __restrict__ point, float* __restrict__ squares)
+{
+  if (lanes == kFewLanes)
+  {
+    maximumDistanceToEdgeAt(kFewLanes, a, b, point, squares);
+  }
+  else
+  {
+    maximumDistanceToEdgeAt(wholeBlocks(lanes), a, b, point, squares);
+  }
+}
+
+namespace
+{
+
+UNDECIMATE_INLINE void subtractAt(int lanes, int rows, const float* __restrict__ a,
+  const float* __restrict__ b, float* __restrict__ difference)
 {
   for (int i = 0; i < rows * lanes; ++i)
   {
     difference[i] = a[i] - b[i];
+  }
+}
+
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+void subtract(int lanes, int rows, const float* __restrict__ a, const float* __restrict__ b,
+  float* __restrict__ difference)
+{
+  if (lanes == kFewLanes)
+  {
+    subtractAt(kFewLanes, rows, a, b, difference);
+  }
+  else
+  {
+    subtractAt(wholeBlocks(lanes), rows, a, b, difference);
   }
 }
 
@@ -225,6 +306,51 @@ void center(int lanes, int rows, const float* __restrict__ a, const float* __res
   for (int i = 0; i < rows * lanes; ++i)
   {
     mean[i] = 0.25F * ((a[i] + b[i]) + (c[i] + d[i]));
+  }
+}
+
+void mean(int lanes, const float* const* points, int count, float* __restrict__ mean)
+{
+  const float share = 1.0F / static_cast<float>(count);
+  for (int i = 0; i < 3 * lanes; ++i)
+  {
+    float sum = points[0][i];
+    for (int k = 1; k < count; ++k)
+    {
+      sum += points[k][i];
+    }
+    mean[i] = share * sum;
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void nearestPoints(int lanes, const float* __restrict__ points, int count,
+  const float* __restrict__ place, int* __restrict__ nearest)
+{
+  // Lanes are 4 or a multiple of 8: some at a time, with their smallest squares at hand.
+  constexpr int kBlock = 4;
+  for (int first = 0; first < lanes; first += kBlock)
+  {
+    float least[kBlock] = { kInfinity, kInfinity, kInfinity, kInfinity };
+    int number[kBlock] = { 0, 0, 0, 0 };
+    for (int k = 0; k < count; ++k)
+    {
+      const float* point = points + 3 * lanes * static_cast<std::ptrdiff_t>(k) + first;
+      for (int i = 0; i < kBlock; ++i)
+      {
+        const float x = point[i] - place[first + i];
+        const float y = point[lanes + i] - place[lanes + first + i];
+        const float z = point[2 * lanes + i] - place[2 * lanes + first + i];
+        const float square = x * x + y * y + z * z;
+        const bool nearer = square < least[i];
+        least[i] = nearer ? square : least[i];
+        number[i] = nearer ? k : number[i];
+      }
+    }
+    for (int i = 0; i < kBlock; ++i)
+    {
+      nearest[first + i] = number[i];
+    }
   }
 }
 
@@ -310,11 +436,19 @@ UNDECIMATE_INLINE int countBad(
     const float both = dot(before, now);
     const float squares = dot(before, before) * dot(now, now);
     const bool turns = !(both > 0.0F && both * both > kMinimumCosine * kMinimumCosine * squares);
-    const bool worse = isBadCell(newCorners, NewCount, lanes, i, now) &&
-      !isBadCell(oldCorners, OldCount, lanes, i, before);
-    badLanes += dot(before, before) > 0.0F && (turns || worse);
+    const bool refused = turns || isBadCell(newCorners, NewCount, lanes, i, now);
+    badLanes += refused && !isBadCell(oldCorners, OldCount, lanes, i, before);
   }
   return badLanes;
+}
+
+template <int OldCount, int NewCount>
+UNDECIMATE_INLINE bool hasNoBad(
+  int lanes, const float* const* oldCorners, const float* const* newCorners)
+{
+  return (lanes == kFewLanes
+             ? countBad<OldCount, NewCount>(kFewLanes, oldCorners, newCorners)
+             : countBad<OldCount, NewCount>(wholeBlocks(lanes), oldCorners, newCorners)) == 0;
 }
 
 } // namespace
@@ -325,13 +459,13 @@ bool mayReplaceCell(int lanes, const float* const* oldCorners, int oldCount,
 {
   if (oldCount == 3)
   {
-    return countBad<3, 3>(lanes, oldCorners, newCorners) == 0;
+    return hasNoBad<3, 3>(lanes, oldCorners, newCorners);
   }
   if (newCount == 3)
   {
-    return countBad<4, 3>(lanes, oldCorners, newCorners) == 0;
+    return hasNoBad<4, 3>(lanes, oldCorners, newCorners);
   }
-  return countBad<4, 4>(lanes, oldCorners, newCorners) == 0;
+  return hasNoBad<4, 4>(lanes, oldCorners, newCorners);
 }
 
 namespace
@@ -434,11 +568,8 @@ UNDECIMATE_INLINE float quadricValue(const float* q, int n, int i, const V& p, V
   return larger(value, 0.0F);
 }
 
-} // namespace
-
-UNDECIMATE_VECTOR_CLONES
-void quadricValues(int lanes, const float* __restrict__ quadric, const float* __restrict__ d,
-  float* __restrict__ squares)
+UNDECIMATE_INLINE void quadricValuesAt(int lanes, const float* __restrict__ quadric,
+  const float* __restrict__ d, float* __restrict__ squares)
 {
   for (int i = 0; i < lanes; ++i)
   {
@@ -447,8 +578,26 @@ void quadricValues(int lanes, const float* __restrict__ quadric, const float* __
   }
 }
 
+} // namespace
+
 UNDECIMATE_VECTOR_CLONES
-void mergeQuadric(
+void quadricValues(int lanes, const float* __restrict__ quadric, const float* __restrict__ d,
+  float* __restrict__ squares)
+{
+  if (lanes == kFewLanes)
+  {
+    quadricValuesAt(kFewLanes, quadric, d, squares);
+  }
+  else
+  {
+    quadricValuesAt(wholeBlocks(lanes), quadric, d, squares);
+  }
+}
+
+namespace
+{
+
+UNDECIMATE_INLINE void mergeQuadricAt(
   int lanes, const float* __restrict__ from, const float* __restrict__ d, float* __restrict__ to)
 {
   const float* const q = from;
@@ -466,6 +615,22 @@ void mergeQuadric(
     to[8 * n + i] += q[8 * n + i] + product.z;
     to[9 * n + i] += value;
     to[10 * n + i] += q[10 * n + i];
+  }
+}
+
+} // namespace
+
+UNDECIMATE_VECTOR_CLONES
+void mergeQuadric(
+  int lanes, const float* __restrict__ from, const float* __restrict__ d, float* __restrict__ to)
+{
+  if (lanes == kFewLanes)
+  {
+    mergeQuadricAt(kFewLanes, from, d, to);
+  }
+  else
+  {
+    mergeQuadricAt(wholeBlocks(lanes), from, d, to);
   }
 }
 

@@ -57,6 +57,14 @@ void middle(int lanes, const float* a, const float* b, float* mean);
 void center(
   int lanes, int rows, const float* a, const float* b, const float* c, const float* d, float* mean);
 
+/// The mean of some points.
+void mean(int lanes, const float* const* points, int count, float* mean);
+
+/// At each step the number of the point nearest to a place; the first of several.
+/// @param points 3 * lanes * count, count 1 or more
+/// @param[out] nearest one for each lane
+void nearestPoints(int lanes, const float* points, int count, const float* place, int* nearest);
+
 /// to[i] = max(to[i], from[i])
 void raise(int lanes, const float* from, float* to);
 
@@ -67,8 +75,8 @@ void lower(int lanes, const float* from, float* to);
 float largest(int lanes, const float* row);
 
 /// Whether a cell may take the place of another one at all steps: it turns by less than the angle
-/// of kMinimumCosine, is no needle unless the old one was, and a quad has no corner that points
-/// inwards. Where the old one has no area anything goes.
+/// of kMinimumCosine, is no needle, and a quad has no corner that points inwards. At steps where
+/// the old one is bad itself (a needle, without area, or with such a corner) anything goes.
 /// @param oldCorners, newCorners 3 or 4 points in order
 bool mayReplaceCell(int lanes, const float* const* oldCorners, int oldCount,
   const float* const* newCorners, int newCount);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -321,6 +322,53 @@ TEST_P(TimeLanes, RefuseCellsThatTurnOrFold)
   once.values[lanes + lanes - 1] = -1.0F;
   EXPECT_FALSE(may({ &a, &b, &c }, { &a, &b, &once })) << "flipped at one step";
   EXPECT_TRUE(may({ &a, &b, &b }, { &a, &c, &b })) << "the old one has no area";
+  EXPECT_TRUE(may({ &a, &b, &needle }, { &a, &needle, &b })) << "the old one is a needle";
+  EXPECT_TRUE(may({ &a, &b, &inside, &d }, { &a, &d, &c })) << "the old one has a corner inwards";
+}
+
+TEST_P(TimeLanes, FindsTheNearestPointAtEachStep)
+{
+  const int lanes = GetParam();
+  constexpr int kCount = 9;
+  std::mt19937 random(7);
+  Rows points(lanes, 3 * kCount);
+  points.randomize(random);
+  Rows place(lanes);
+  place.randomize(random);
+  std::vector<int> nearest(lanes, -1);
+  nearestPoints(lanes, points.data(), kCount, place.data(), nearest.data());
+  for (int lane = 0; lane < lanes; ++lane)
+  {
+    std::array<double, kCount> squares{};
+    for (int k = 0; k < kCount; ++k)
+    {
+      const float* rows = points.data() + 3 * lanes * k;
+      const Point offset =
+        minus({ rows[lane], rows[lanes + lane], rows[2 * lanes + lane] }, place.at(lane));
+      squares[k] = dot(offset, offset);
+    }
+    EXPECT_EQ(nearest[lane], std::min_element(squares.begin(), squares.end()) - squares.begin());
+  }
+}
+
+TEST_P(TimeLanes, TakesTheMeanOfPoints)
+{
+  const int lanes = GetParam();
+  std::mt19937 random(8);
+  Rows a(lanes);
+  Rows b(lanes);
+  Rows c(lanes);
+  for (Rows* rows : { &a, &b, &c })
+  {
+    rows->randomize(random);
+  }
+  const float* rows[] = { a.data(), b.data(), c.data() };
+  Rows middle(lanes);
+  mean(lanes, rows, 3, middle.values.data());
+  for (int i = 0; i < 3 * lanes; ++i)
+  {
+    EXPECT_NEAR(middle.values[i], (a.values[i] + b.values[i] + c.values[i]) / 3, 1e-6);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Lanes, TimeLanes, ::testing::Values(4, 8, 16, 32));
