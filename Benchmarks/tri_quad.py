@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables 1 to 3 of Wundrak et al. (2006), re-made on our series, and the scale of a million nodes.
 
-    run.sh tri_quad [--parts static dynamic steps scale] [--spacing 0.01] [--every 5]
+    run.sh tri_quad [--parts static dynamic steps scale] [--tolerance 0.0002] [--every 5]
 
-Distances: two-sided Hausdorff by CGAL (tri_quad_distance), cells cut around their centers, in % of
+Distances: two-sided Hausdorff by CGAL (tri_quad_distance), to the tolerance, cells cut around their centers, in % of
 the diagonal of the bounding box at the first step ("t0") and at the step itself ("own"). Rivals:
 vtkQuadricDecimation on the triangulated mesh of one step (it moves nodes); fast-simplification,
 decimating the first step and replaying the collapses on the others; quadrics of the last step alone.
@@ -86,8 +86,8 @@ class Bench:
         """Largest distance in % of the diagonals: per step {step: (t0, own)}, and the largest of each."""
         level = os.path.join(self.folder, "level.cells")
         np.ascontiguousarray(cells, np.int32).tofile(level)
-        command = [self.args.distance, series, ",".join(map(str, steps)), level, "--spacing",
-                   str(self.args.spacing)]
+        command = [self.args.distance, series, ",".join(map(str, steps)), level, "--tolerance",
+                   str(self.args.tolerance)]
         if points is not None:
             moved = os.path.join(self.folder, "moved.points")
             np.ascontiguousarray(points, np.float32).tofile(moved)
@@ -266,7 +266,7 @@ def main():
     a.add_argument("--cli", required=True, help="the built tri_quad_cli (run.sh passes it)")
     a.add_argument("--distance", required=True, help="the built tri_quad_distance (needs CGAL)")
     a.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
-    a.add_argument("--spacing", type=float, default=.01, help="of the projected points, in diagonals")
+    a.add_argument("--tolerance", type=float, default=.0002, help="of the distances, in diagonals")
     a.add_argument("--every", type=int, default=5, help="measure every so many steps, the last one always")
     a.add_argument("--json", help="write all numbers to this file")
     args = a.parse_args()

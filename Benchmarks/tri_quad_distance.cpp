@@ -4,13 +4,13 @@
 // Two-sided Hausdorff distance, step by step, between a series and the same nodes with other cells
 // (or other points), by CGAL's AABB trees: for tri_quad.py.
 //
-//   tri_quad_distance SERIES STEPS CELLS [--points FILE] [--spacing 0.004]
+//   tri_quad_distance SERIES STEPS CELLS [--points FILE] [--tolerance 0.0001]
 //
 // SERIES and CELLS: see tri_quad_cli.cpp; STEPS: 0,15,30 or "all". --points: float32 points of the
 // cells for each of the steps, step after step (for rivals that move nodes). Cells are cut into
-// triangles around their center. From each surface all corners, centers and a lattice of points not
-// farther apart than the spacing (a fraction of the diagonal) are projected onto the other one.
-// Prints "step forth back diagonal" for each step; forth: from the series to the cells.
+// triangles around their center. Each distance is at most the tolerance (a fraction of the
+// diagonal) too small. Prints "step forth back diagonal" for each step; forth: from the series to
+// the cells.
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -24,6 +24,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <queue>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -85,26 +86,57 @@ Triangles triangulate(const std::vector<float>& points, const std::vector<std::i
   return triangles;
 }
 
-double farthest(const Triangles& from, const Tree& to, double spacing)
+/// A piece of a surface, with what is known of its distances to the other one.
+struct Piece
+{
+  Point corners[3];
+  double most; // no point of it is farther
+};
+
+Piece measured(const Point& a, const Point& b, const Point& c, const Tree& to, double& square)
+{
+  const Point middle = CGAL::centroid(a, b, c);
+  const auto [nearest, triangle] = to.closest_point_and_primitive(middle);
+  const double distance = (nearest - middle).squared_length();
+  square = std::max(square, distance);
+  // The distance to one triangle is convex, so none is larger than the largest at the corners.
+  double radius = 0.0;
+  double most = 0.0;
+  for (const Point& corner : { a, b, c })
+  {
+    radius = std::max(radius, (corner - middle).squared_length());
+    most = std::max(most, CGAL::squared_distance(corner, *triangle));
+  }
+  return { { a, b, c }, std::min(std::sqrt(distance) + std::sqrt(radius), std::sqrt(most)) };
+}
+
+// The largest distance of a surface's points to the other one, at most `tolerance` too small: a
+// piece is cut into four as long as a point of it could be farther than the farthest one so far.
+double farthest(const Triangles& from, const Tree& to, double tolerance)
 {
   double square = 0.0;
+  const auto isNearer = [](const Piece& a, const Piece& b) { return a.most < b.most; };
+  std::priority_queue<Piece, std::vector<Piece>, decltype(isNearer)> pieces(isNearer);
   for (const Triangle& t : from)
   {
-    double longest = 0.0;
     for (int k = 0; k < 3; ++k)
     {
-      longest = std::max(longest, (t[k] - t[(k + 1) % 3]).squared_length());
+      square = std::max(square, to.squared_distance(t[k]));
     }
-    const int n = std::clamp(static_cast<int>(std::ceil(std::sqrt(longest) / spacing)), 1, 400);
-    for (int i = 0; i <= n; ++i)
-    {
-      for (int j = 0; i + j <= n; ++j)
-      {
-        const Point p = t[0] + (static_cast<double>(i) / n) * (t[1] - t[0]) +
-          (static_cast<double>(j) / n) * (t[2] - t[0]);
-        square = std::max(square, to.squared_distance(p));
-      }
-    }
+    pieces.push(measured(t[0], t[1], t[2], to, square));
+  }
+  while (!pieces.empty() && pieces.top().most > std::sqrt(square) + tolerance)
+  {
+    const Piece piece = pieces.top();
+    pieces.pop();
+    const auto& [a, b, c] = piece.corners;
+    const Point ab = CGAL::midpoint(a, b);
+    const Point bc = CGAL::midpoint(b, c);
+    const Point ca = CGAL::midpoint(c, a);
+    pieces.push(measured(a, ab, ca, to, square));
+    pieces.push(measured(ab, b, bc, to, square));
+    pieces.push(measured(ca, bc, c, to, square));
+    pieces.push(measured(ab, bc, ca, to, square));
   }
   return std::sqrt(square);
 }
@@ -118,13 +150,13 @@ int main(int argc, char** argv)
     fail("usage: see the head of the source");
   }
   std::string moved;
-  double spacing = 0.004;
+  double tolerance = 1e-4;
   for (int i = 4; i + 1 < argc; i += 2)
   {
     if (std::string(argv[i]) == "--points")
       moved = argv[i + 1];
-    else if (std::string(argv[i]) == "--spacing")
-      spacing = std::atof(argv[i + 1]);
+    else if (std::string(argv[i]) == "--tolerance")
+      tolerance = std::atof(argv[i + 1]);
     else
       fail(std::string("unknown option ") + argv[i]);
   }
@@ -192,8 +224,8 @@ int main(int argc, char** argv)
     Tree coarseTree(coarse.begin(), coarse.end());
     originalTree.accelerate_distance_queries();
     coarseTree.accelerate_distance_queries();
-    std::printf("%d %.9g %.9g %.9g\n", step, farthest(original, coarseTree, spacing * diagonal),
-      farthest(coarse, originalTree, spacing * diagonal), diagonal);
+    std::printf("%d %.9g %.9g %.9g\n", step, farthest(original, coarseTree, tolerance * diagonal),
+      farthest(coarse, originalTree, tolerance * diagonal), diagonal);
     std::fflush(stdout);
   }
   return 0;
