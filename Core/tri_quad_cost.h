@@ -65,14 +65,26 @@ struct TriQuadPatch
 class TriQuadCost
 {
 public:
+  /// @param mesh what the topology was made of
   /// @param kept nodes that are never removed; those whose cells have a node without a finite
   /// position or value are added
-  TriQuadCost(TriQuadTopology& topology, const TimeRows& positions,
+  TriQuadCost(const TriQuadMeshView& mesh, TriQuadTopology& topology, const TimeRows& positions,
     const TriQuadDecimationOptions& options, std::vector<unsigned char>& kept);
 
+  enum class Effort
+  {
+    Estimate, ///< Deviation of the neighbour that is best by the quadrics, without the way back
+    Full      ///< of several neighbours, with the distance from the new cells to the original ones
+  };
+
   /// Find where a node goes best.
+  /// @param effort Full is for Deviation only; the Quadrics know no other than Estimate
   /// @return false if it cannot go anywhere; the patch is then not to be used
-  bool evaluate(Index node, TriQuadPatch& patch);
+  bool evaluate(Index node, Effort effort, TriQuadPatch& patch);
+
+  /// Whether the full effort is worth it for a patch that was estimated: not with Quadrics, and not
+  /// as long as few nodes were removed from it.
+  bool hasMore(const TriQuadPatch& patch) const;
 
   /// Take note that the collapse of the last evaluate() is made. Call before the topology changes.
   void collapsed(const TriQuadPatch& patch);
@@ -103,9 +115,17 @@ private:
   bool keepsCells(const TriQuadPatch& patch, unsigned char target) const;
   double combine(const float* squares) const;
   double quadricError(const TriQuadPatch& patch, unsigned char target);
-  double measure(const TriQuadPatch& patch, unsigned char target);
+  double measure(const TriQuadPatch& patch, unsigned char target, bool back);
+  bool isTooFar() const;
   void measureLine(const TriQuadPatch& patch, unsigned char target);
   void measureNewEdges(const TriQuadPatch& patch, unsigned char target);
+  template <typename Use>
+  void forNewEdges(const TriQuadPatch& patch, unsigned char target, Use&& use) const;
+  void findOriginals();
+  void measureBack(const TriQuadPatch& patch, unsigned char target);
+  void measureHalfwayBack(const float* corner);
+  void measureSampleBack(const float* point);
+  void measureOriginal(Index cell, const float* point);
 
   // Cells of the patch, cut into triangles: quads around their centers.
   struct Triangles
@@ -144,6 +164,11 @@ private:
   std::vector<Index> nextOnLine_;   // of a node
   std::unordered_map<std::uint64_t, Index> lines_;
 
+  // The input's cells, and the numbers of those around each node.
+  const TriQuadMeshView& mesh_;
+  LargeArray<Index, 0> firstOriginal_; // of a node, in originalsOf_; and the end
+  LargeArray<Index, 1> originalsOf_;
+
   // The patch at hand.
   const TriQuadPatch* patch_ = nullptr;
   std::vector<float> relative_; // positions less the node's, by local number
@@ -158,10 +183,12 @@ private:
   Triangles newTriangles_;
   std::vector<LaneValues> laneValues_;
   std::vector<float> point_;
+  std::vector<float> middle_;
   std::vector<float> nearest_;
   std::vector<float> cellNearest_;
   std::vector<float> errors_;
   std::vector<float> squares_;     // largest over all samples
+  double limit_ = 0.0;             // of the error: a target beyond it is not measured to the end
   std::vector<float> bestSquares_; // of the target that was chosen
   std::vector<float> worst_;       // largest of all collapses
   struct Home
@@ -171,6 +198,14 @@ private:
   };
   std::vector<Home> homes_;     // of the target measured last
   std::vector<Home> bestHomes_; // of the one that was chosen
+  // For the way back to the original cells.
+  std::vector<Index> placeNodes_;       // the nodes of the patch and those removed from it
+  std::vector<float> places_;           // their positions
+  std::vector<int> nearestPlaces_;      // at each step
+  std::vector<Index> nearestOriginals_; // cells
+  std::vector<float> cellRows_;         // corners and center of one
+  std::vector<Index> preparedCells_;    // those at hand
+  std::vector<float> preparedRows_;     // their triangles
 };
 
 } // namespace undecimate

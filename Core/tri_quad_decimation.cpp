@@ -78,15 +78,18 @@ public:
       }
       this->prefetch(queue);
       // A node that cannot go now waits outside the queue until a neighbour goes.
-      if (!this->cost_.evaluate(node, this->patch_))
+      if (!this->cost_.evaluate(node, TriQuadCost::Effort::Estimate, this->patch_) ||
+        this->waits(queue, node, interval))
       {
         continue;
       }
-      const Index current = logarithmicInterval(static_cast<float>(this->patch_.cost));
-      if (current > interval && !queue.empty() && current > queue.lowestInterval())
+      if (this->cost_.hasMore(this->patch_))
       {
-        queue.insert(node, current);
-        continue;
+        this->cost_.evaluate(node, TriQuadCost::Effort::Full, this->patch_);
+        if (this->waits(queue, node, interval))
+        {
+          continue;
+        }
       }
       if (this->patch_.error > this->options_.maximumError)
       {
@@ -121,12 +124,25 @@ private:
       {
         return false;
       }
-      if (!this->kept_[node] && this->cost_.evaluate(node, this->patch_))
+      if (!this->kept_[node] &&
+        this->cost_.evaluate(node, TriQuadCost::Effort::Estimate, this->patch_))
       {
         queue.insert(node, logarithmicInterval(static_cast<float>(this->patch_.cost)));
       }
     }
     return true;
+  }
+
+  // Whether others are to go before the node that was evaluated; it is in the queue again then.
+  bool waits(HashQueue& queue, Index node, Index interval) const
+  {
+    const Index current = logarithmicInterval(static_cast<float>(this->patch_.cost));
+    if (current > interval && !queue.empty() && current > queue.lowestInterval())
+    {
+      queue.insert(node, current);
+      return true;
+    }
+    return false;
   }
 
   void prefetch(const HashQueue& queue) const
@@ -369,7 +385,7 @@ Outcome run(const TriQuadMeshView& mesh, const TimeRows& positions,
   TriQuadTopology topology(mesh);
   std::vector<unsigned char> kept = findKeptNodes(mesh, topology, options.preserveBoundary, result);
   const auto before = std::count(kept.begin(), kept.end(), 0);
-  TriQuadCost cost(topology, positions, options, kept);
+  TriQuadCost cost(mesh, topology, positions, options, kept);
   result.nonFiniteNodes = static_cast<Index>(before - std::count(kept.begin(), kept.end(), 0));
   const Status status = TriQuadDecimation(topology, cost, kept, options, monitor).run(result);
   return { status, status == Status::Cancelled ? "Cancelled." : "" };

@@ -19,7 +19,9 @@
 /// - **Deviation** (ours, the default): at each time step the distance to the new cells of every
 ///   node that has been removed from the cells around, the distance of the middles of new edges to
 ///   the old cells, and along boundaries that of removed nodes to the new boundary edge; the
-///   largest over all of these and all time steps. The quadrics choose among the neighbours.
+///   largest over all of these and all time steps. Before a node goes from whose cells several have
+///   been removed, points of the new cells and edges are measured to the original cells, too, and
+///   some neighbours are compared so. Which ones, and where a node goes before, say the quadrics.
 ///
 /// Sources: [W06] S. Wundrak, T. Henn, A. Stork: Dynamic Progressive Triangle-Quadrilateral Meshes,
 /// WSCG 2006. [GH97] M. Garland, P. S. Heckbert: Surface Simplification Using Quadric Error
@@ -88,8 +90,9 @@ struct TriQuadDecimationOptions
   /// null.
   const TimeRows* allPositions = nullptr;
 
-  /// Neighbours of a node, best first by quadrics, that Deviation compares. 1 or more.
-  int candidates = 1;
+  /// Neighbours of a node, best first by quadrics, that Deviation compares before the node goes if
+  /// several nodes have been removed around it. 1 or more.
+  int candidates = 4;
 };
 
 struct TriQuadDecimationResult
@@ -125,7 +128,7 @@ struct TriQuadDecimationResult
 /// @param monitor progress and cancel
 /// @param[out] result complete on Ok, empty otherwise
 /// Complexity: O(nodes * steps); Deviation O(nodes * steps * log(nodes / nodes left)).
-/// Memory: 44 bytes a node and lane for the quadrics (lanesFor()), 130 to 210 bytes a node for the
+/// Memory: 44 bytes a node and lane for the quadrics (lanesFor()), 150 to 230 bytes a node for the
 /// rest, besides the positions (memory.md).
 /// Throws nothing: exceptions of the monitor's callback end the call as Cancelled.
 Outcome decimateTriQuad(const TriQuadMeshView& mesh, const TimeRows& positions,
