@@ -123,6 +123,13 @@ struct Rows
     ++this->count;
   }
 
+  void move(std::size_t from, std::size_t to)
+  {
+    this->x[to] = this->x[from];
+    this->y[to] = this->y[from];
+    this->z[to] = this->z[from];
+  }
+
   /// Repeat the first point up to whole vectors.
   PointRows padded()
   {
@@ -154,8 +161,9 @@ struct DeviationCriterion::Shared
   bool useArrays = false;
   std::vector<unsigned char> undefined; // empty if there is none
 
-  // Nodes removed so far: a list for each triangle (its head is Triangle::first, the next is in
-  // MeshNode::value), and one for each boundary edge (by its first node), if there is a boundary.
+  // Nodes removed so far: a list for each triangle (its head is Triangle::first), and one for each
+  // boundary edge (by its first node), if there is a boundary.
+  std::vector<Index> next;
   std::vector<Index> boundaryFirst;
   std::vector<Index> boundaryNext;
 
@@ -183,6 +191,7 @@ struct DeviationCriterion::Internals
   const std::vector<ArrayRange>& arrayRanges = shared->arrayRanges;
   const bool useArrays = shared->useArrays;
   const std::vector<unsigned char>& undefined = shared->undefined;
+  std::vector<Index>& next = shared->next;
   std::vector<Index>& boundaryFirst = shared->boundaryFirst;
   std::vector<Index>& boundaryNext = shared->boundaryNext;
 
@@ -196,8 +205,9 @@ struct DeviationCriterion::Internals
   double arrayFactor = 1.0;         // of the arrays' errors, besides
   Rows samples;                     // the node, then the nodes removed before
   std::vector<Index> sampleNodes;   // all of them
+  std::vector<float> nearest;       // of these, squares
   Rows between;                     // middles of original edges and triangles
-  std::vector<std::uint64_t> marks; // a bit a node: in sampleNodes
+  std::vector<std::uint64_t> marks; // a bit a node: of the hole, see betweenSquare()
   bool untouched = false;           // all triangles of the hole are original ones
   std::vector<float> values;        // of the arrays: a row of samples for each component
   PointRows sampleRows;
@@ -302,13 +312,15 @@ struct DeviationCriterion::Internals
   bool chooseTriangulation(const Hole& hole, HoleTriangulation& filling) const;
   void fillRow(const Hole& hole, const Triple& t, int row);
   Squares sampleSquares(int count) const;
-  double betweenSquare(const Hole& hole, const HoleTriangulation& filling);
+  void gatherBetween(const Hole& hole, const HoleTriangulation& filling);
+  double betweenSquare(const Hole& hole, const HoleTriangulation& filling, double square);
   double reverseSquare(const Hole& hole, const HoleTriangulation& filling, double square) const;
   void offer(const Hole& hole, const HoleTriangulation& filling);
   double shapeTerm(double shape) const { return kShapeWeight * this->radius * (1.0 - shape); }
   void compareAll(const Hole& hole);
   void compareSome(const Hole& hole);
   bool findBest(const Hole& hole);
+  bool findAllowed(const Hole& hole);
   bool forbidExisting(const Hole& hole);
   bool liesOn(const Hole& hole, int triangle) const;
   bool refuseFolded(const Hole& hole);
@@ -358,6 +370,7 @@ DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTop
   {
     topology.node(node).sum = packed(in.original.normal(node));
   }
+  in.next.assign(nodeCount, kNone);
   for (Index node = 0; node < nodeCount; ++node)
   {
     if (topology.kind(node) == NodeKind::Boundary)
@@ -438,7 +451,7 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
     const TriangleTopology::Triangle& triangle =
       this->topology.triangle(triangleOf(hole.corners[i]));
     this->untouched = this->untouched && triangle.spare == 0;
-    for (Index node = triangle.first; node != kNone; node = this->topology.node(node).value)
+    for (Index node = triangle.first; node != kNone; node = this->next[node])
     {
       this->samples.add(this->unit * (this->topology.node(node).position - center));
       this->sampleNodes.push_back(node);
@@ -911,58 +924,96 @@ DeviationCriterion::Internals::Squares DeviationCriterion::Internals::sampleSqua
   return { largest, largestError };
 }
 
-// Largest squared distance from the middles of the original edges and triangles in the hole to the
-// new surface: where it has a valley they are farther from it than the nodes.
-double DeviationCriterion::Internals::betweenSquare(
+// Collect places in the original triangles and on their edges in the hole. A triangle whose corners
+// all went to one new triangle is no farther from it than they are, since distances from a convex
+// set are convex: only those that lie over several new triangles count.
+void DeviationCriterion::Internals::gatherBetween(
   const Hole& hole, const HoleTriangulation& filling)
 {
-  const Vector center = this->topology.node(hole.node).position;
+  constexpr std::int32_t kRing = 256; // + position in the ring: of the ring nodes
   const auto mark = [this](Index node) -> std::uint64_t&
   { return this->marks[static_cast<std::size_t>(node) / 64]; };
   const auto bit = [](Index node) { return std::uint64_t{ 1 } << (node % 64); };
-  const auto isMarked = [&](Index node) { return (mark(node) & bit(node)) != 0; };
-  const Index* end = hole.ring.data() + hole.size;
-  const auto isHere = [&](Index node)
-  { return isMarked(node) || std::find(hole.ring.data(), end, node) != end; };
-  for (const Index node : this->sampleNodes)
+  const auto enter = [&](Index node, std::int32_t value)
   {
     mark(node) |= bit(node);
-  }
-  this->between.clear();
-  const bool few = this->sampleNodes.size() <= kFewSamples;
-  for (const Index node : this->sampleNodes)
+    this->topology.node(node).value = value;
+  };
+  for (std::size_t s = 0; s < this->sampleNodes.size(); ++s)
   {
+    enter(this->sampleNodes[s], filling.count == 0 ? 0 : this->assignment[s]);
+  }
+  for (int i = 0; i < hole.size; ++i)
+  {
+    enter(hole.ring[i], kRing + i);
+  }
+  const Vector center = this->topology.node(hole.node).position;
+  const bool few = this->sampleNodes.size() <= kFewSamples;
+  this->between.clear();
+  const auto add = [&](const std::array<Index, 3>& corners)
+  {
+    std::array<Vector, 3> places;
+    for (int c = 0; c < 3; ++c)
+    {
+      places[c] = this->unit * (this->topology.node(corners[c]).position - center);
+    }
+    this->between.add((1.0 / 3.0) * (places[0] + places[1] + places[2]));
+    for (int c = 0; few && c < 3; ++c)
+    {
+      this->between.add((1.0 / 6.0) * (places[0] + places[1] + places[2]) + 0.5 * places[c]);
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      // The triangle beside has the edge the other way round.
+      const int next = nextCorner(c);
+      if (corners[c] < corners[next])
+      {
+        this->between.add(0.5 * (places[c] + places[next]));
+        if (few)
+        {
+          this->between.add(0.75 * places[c] + 0.25 * places[next]);
+          this->between.add(0.25 * places[c] + 0.75 * places[next]);
+        }
+      }
+    }
+  };
+  for (std::size_t s = 0; s < this->sampleNodes.size(); ++s)
+  {
+    const Index node = this->sampleNodes[s];
+    const int own = filling.count == 0 ? 0 : this->assignment[s];
     this->original.visitTriangles(node,
       [&](const std::array<Index, 3>& corners)
       {
-        std::array<Vector, 3> places;
-        for (int c = 0; c < 3; ++c)
+        bool across = filling.count == 0;
+        for (const Index corner : corners)
         {
-          // Each triangle once: by its first node that was removed.
-          if (!isHere(corners[c]) || (corners[c] < node && isMarked(corners[c])))
+          if (corner == node)
+          {
+            continue;
+          }
+          if ((mark(corner) & bit(corner)) == 0)
           {
             return;
           }
-          places[c] = this->unit * (this->topology.node(corners[c]).position - center);
-        }
-        this->between.add((1.0 / 3.0) * (places[0] + places[1] + places[2]));
-        for (int c = 0; few && c < 3; ++c)
-        {
-          this->between.add((1.0 / 6.0) * (places[0] + places[1] + places[2]) + 0.5 * places[c]);
-        }
-        for (int c = 0; c < 3; ++c)
-        {
-          // The triangle beside has the edge the other way round.
-          const int next = nextCorner(c);
-          if (corners[c] < corners[next])
+          const std::int32_t value = this->topology.node(corner).value;
+          if (value < kRing)
           {
-            this->between.add(0.5 * (places[c] + places[next]));
-            if (few)
+            // Each triangle once: by its first node that was removed.
+            if (corner < node)
             {
-              this->between.add(0.75 * places[c] + 0.25 * places[next]);
-              this->between.add(0.25 * places[c] + 0.75 * places[next]);
+              return;
             }
+            across = across || value != own;
           }
+          else if (!across)
+          {
+            const Triple& t = filling.triangles[own];
+            across = std::find(t.begin(), t.end(), value - kRing) == t.end();
+          }
+        }
+        if (across)
+        {
+          add(corners);
         }
       });
   }
@@ -970,25 +1021,37 @@ double DeviationCriterion::Internals::betweenSquare(
   {
     mark(node) = 0;
   }
+  for (int i = 0; i < hole.size; ++i)
+  {
+    mark(hole.ring[i]) = 0;
+  }
+}
+
+// Largest squared distance from places between the original nodes to the new surface, or `square`
+// if that is larger: over a valley they are farther from it than the nodes.
+double DeviationCriterion::Internals::betweenSquare(
+  const Hole& hole, const HoleTriangulation& filling, double square)
+{
+  this->gatherBetween(hole, filling);
   if (this->between.count == 0)
   {
-    return 0.0;
+    return square;
   }
-  const PointRows rows = this->between.padded();
-  grow(this->squares, std::size_t{ 2 } * rows.size);
-  float* __restrict__ nearest = this->squares.data();
-  float* __restrict__ squareRow = nearest + rows.size;
-  std::fill_n(nearest, rows.size, kInfinity);
+  std::vector<float>& nearest = this->nearest;
+  nearest.assign(paddedSize(static_cast<int>(this->between.count)), kInfinity);
   const auto measure = [&](const Vector& a, const Vector& b, const Vector& c)
   {
     DistanceTriangle triangle;
-    if (triangle.set(a, b, c))
+    if (!triangle.set(a, b, c))
     {
-      triangle.squaredDistances(rows, squareRow);
-      for (int i = 0; i < rows.size; ++i)
-      {
-        nearest[i] = squareRow[i] < nearest[i] ? squareRow[i] : nearest[i];
-      }
+      return;
+    }
+    const PointRows rows = this->between.padded();
+    grow(this->squares, rows.size);
+    triangle.squaredDistances(rows, this->squares.data());
+    for (int i = 0; i < rows.size; ++i)
+    {
+      nearest[i] = this->squares[i] < nearest[i] ? this->squares[i] : nearest[i];
     }
   };
   for (int t = 0; t < filling.count; ++t)
@@ -996,7 +1059,25 @@ double DeviationCriterion::Internals::betweenSquare(
     const Triple& corners = filling.triangles[t];
     measure(this->ring[corners[0]], this->ring[corners[1]], this->ring[corners[2]]);
   }
-  // A removed node on the ring has original triangles on both sides of it.
+  // A removed node on the ring has original triangles on both sides of it: what is far away may be
+  // near the triangles around the hole.
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < this->between.count; ++i)
+  {
+    if (nearest[i] > square)
+    {
+      this->between.move(i, far);
+      nearest[far++] = nearest[i];
+    }
+  }
+  if (far == 0)
+  {
+    return square;
+  }
+  this->between.count = far;
+  this->between.padded();
+  std::fill(nearest.begin() + far, nearest.begin() + this->between.count, 0.0F);
+  const Vector center = this->topology.node(hole.node).position;
   for (int i = 0; i < hole.triangleCount; ++i)
   {
     if (hole.outer[i] != kNoCorner)
@@ -1007,7 +1088,7 @@ double DeviationCriterion::Internals::betweenSquare(
       measure(place(0), place(1), place(2));
     }
   }
-  return *std::max_element(nearest, nearest + rows.size);
+  return std::max<double>(square, *std::max_element(nearest.begin(), nearest.begin() + far));
 }
 
 // Largest squared distance from the new surface back to the original one, or `square` if that is
@@ -1078,7 +1159,14 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
       const int j = std::max(triangle[c], triangle[nextCorner(c)]);
       if (!this->isRingEdge(hole, i, j))
       {
-        largest.include(this->crossingSquares(hole, i, j));
+        if (this->useArrays || hole.size > kMaximumCompared)
+        {
+          largest.include(this->crossingSquares(hole, i, j));
+        }
+        else
+        {
+          largest.include({ this->crossings[pairNumber(i, j)], 0.0 });
+        }
       }
     }
   }
@@ -1289,6 +1377,23 @@ bool DeviationCriterion::Internals::refuseFolded(const Hole& hole)
   return any;
 }
 
+// Best triangulation of a hole that makes no edge that exists.
+bool DeviationCriterion::Internals::findAllowed(const Hole& hole)
+{
+  bool found = this->findBest(hole);
+  bool forbade = false;
+  while (found && this->forbidExisting(hole))
+  {
+    forbade = true;
+    found = this->findBest(hole);
+  }
+  for (int i = 0; forbade && i < hole.size; ++i)
+  {
+    std::fill_n(this->forbidden[i].begin(), hole.size, false);
+  }
+  return found;
+}
+
 double DeviationCriterion::Internals::cost() const
 {
   return this->costFactor * std::sqrt(this->best.squares.largest());
@@ -1329,45 +1434,45 @@ bool DeviationCriterion::retriangulate(
   }
   in.boundarySquare(hole);
   in.gatherSamples(hole);
-  bool found = in.findBest(hole);
-  bool forbade = false;
-  while (found)
+  if (!in.findAllowed(hole))
   {
-    const bool existing = in.forbidExisting(hole);
-    const bool folded = in.refuseFolded(hole);
-    if (!existing && !folded)
-    {
-      break;
-    }
-    forbade = forbade || existing;
-    found = (!folded || hole.size <= kMaximumCompared) && in.findBest(hole);
+    return false;
   }
-  in.refused.clear();
-  if (forbade)
-  {
-    for (int i = 0; i < hole.size; ++i)
-    {
-      std::fill_n(in.forbidden[i].begin(), hole.size, false);
-    }
-  }
-  if (found)
-  {
-    filling = in.best.filling;
-    cost = in.cost();
-  }
-  return found;
+  filling = in.best.filling;
+  cost = in.cost();
+  return true;
 }
 
-double DeviationCriterion::confirm(const Hole& hole, const HoleTriangulation& filling, double& cost)
+double DeviationCriterion::confirm(const Hole& hole, HoleTriangulation& filling, double& cost)
 {
   Internals& in = *this->internals_;
+  bool folded = false;
+  bool found = true;
+  while (found && in.refuseFolded(hole))
+  {
+    folded = true;
+    found = hole.size <= kMaximumCompared && in.findAllowed(hole);
+  }
+  in.refused.clear();
+  if (!found)
+  {
+    cost = HUGE_VAL;
+    return cost;
+  }
+  if (folded)
+  {
+    filling = in.best.filling;
+  }
   // While the hole's triangles are original ones, its node and the crossings of the edges have told
   // it all.
   if (!in.untouched)
   {
-    double& square = in.best.squares.distance;
-    square = std::max(square, in.betweenSquare(hole, filling));
-    square = std::max(square, in.reverseSquare(hole, filling, in.error() * in.error()));
+    const double error = in.error() * in.error();
+    const double square = in.reverseSquare(hole, filling, in.betweenSquare(hole, filling, error));
+    if (square > error)
+    {
+      in.best.squares.include({ square, 0.0 });
+    }
   }
   cost = in.cost();
   return in.error();
@@ -1389,7 +1494,7 @@ void DeviationCriterion::removed(const Hole& hole, const HoleTriangulation& fill
     const Index slot =
       triangleOf(filling.count == 0 ? hole.outer[0] : hole.corners[in.assignment[s]]);
     Index& first = in.topology.triangle(slot).first;
-    in.topology.node(node).value = first;
+    in.next[node] = first;
     first = node;
   }
   if (hole.boundary)

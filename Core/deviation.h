@@ -74,9 +74,10 @@ public:
 
   /// Look closer at the last retriangulate(): at places between the nodes of the original surface,
   /// and the way back to it. Only removals that are about to be made need this.
-  /// @param[in,out] cost not smaller than before
+  /// @param[in,out] filling another one if the first would lie on its surroundings
+  /// @param[in,out] cost not smaller than before; infinite if there is no filling that does not
   /// @return the error: the deviation, or the weighted error of the arrays if that is larger
-  double confirm(const Hole& hole, const HoleTriangulation& filling, double& cost);
+  double confirm(const Hole& hole, HoleTriangulation& filling, double& cost);
 
   /// Take note of a removal (of the node and filling of the last retriangulate()).
   void removed(const Hole& hole, const HoleTriangulation& filling);

@@ -96,19 +96,6 @@ OriginalSurface::OriginalSurface(const TriangleMeshView& mesh, const TriangleTop
   }
 }
 
-std::array<Index, 3> OriginalSurface::corners(Index triangle) const
-{
-  const std::size_t i = std::size_t{ 3 } * triangle;
-  if (this->mesh_.wideTriangles)
-  {
-    const std::int64_t* nodes = this->mesh_.wideTriangles + i;
-    return { static_cast<Index>(nodes[0]), static_cast<Index>(nodes[1]),
-      static_cast<Index>(nodes[2]) };
-  }
-  const Index* nodes = this->mesh_.triangles + i;
-  return { nodes[0], nodes[1], nodes[2] };
-}
-
 Vector OriginalSurface::normal(Index node) const
 {
   Vector sum{ 0.0, 0.0, 0.0 };

@@ -48,7 +48,18 @@ public:
 private:
   static constexpr int kMaximumVisits = 32; // of nodes, in a walk
 
-  std::array<Index, 3> corners(Index triangle) const;
+  std::array<Index, 3> corners(Index triangle) const
+  {
+    const std::size_t i = std::size_t{ 3 } * triangle;
+    if (this->mesh_.wideTriangles)
+    {
+      const std::int64_t* nodes = this->mesh_.wideTriangles + i;
+      return { static_cast<Index>(nodes[0]), static_cast<Index>(nodes[1]),
+        static_cast<Index>(nodes[2]) };
+    }
+    const Index* nodes = this->mesh_.triangles + i;
+    return { nodes[0], nodes[1], nodes[2] };
+  }
 
   const TriangleMeshView& mesh_;
   const TriangleTopology& topology_;

@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -471,6 +472,11 @@ private:
       if constexpr (CriterionType::kLazy)
       {
         error = worker.criterion.confirm(worker.hole, worker.filling, cost);
+        if (cost == HUGE_VAL) // cannot go now
+        {
+          ++raised;
+          continue;
+        }
         if (mustWait())
         {
           continue;
