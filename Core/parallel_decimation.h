@@ -316,6 +316,7 @@ private:
     std::vector<Index>& counts = this->workers_.front()->counts;
     std::fill(counts.begin(), counts.end(), 0);
     std::vector<Part> now;
+    now.reserve(parts.count());
     for (Index part = 0; part < parts.count(); ++part)
     {
       now.push_back({ RecordSteps(this->options_.trackCellSources), {} });
