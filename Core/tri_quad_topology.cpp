@@ -76,7 +76,6 @@ public:
         }
       }
     }
-    t.marks_.assign(t.copyCount(), 0);
   }
 
 private:
@@ -411,7 +410,7 @@ bool TriQuadTopology::gather(Index copy, Fan& fan) const
   return true;
 }
 
-bool TriQuadTopology::mayCollapse(const Fan& fan, Index target)
+bool TriQuadTopology::mayCollapse(const Fan& fan, Index target) const
 {
   const auto* end = fan.neighbours.begin() + fan.neighbourCount;
   const auto* found = std::find(fan.neighbours.begin(), end, target);
@@ -450,7 +449,7 @@ bool TriQuadTopology::mayCollapse(const Fan& fan, Index target)
 }
 
 // P1*, or what is in its place.
-bool TriQuadTopology::keepsNeighbourRule(const Fan& fan, Index target)
+bool TriQuadTopology::keepsNeighbourRule(const Fan& fan, Index target) const
 {
   if (this->rules_.neighbours == NeighbourRule::None)
   {
@@ -459,11 +458,15 @@ bool TriQuadTopology::keepsNeighbourRule(const Fan& fan, Index target)
   const bool second = this->rules_.neighbours == NeighbourRule::SecondOrder;
   std::array<Index, 2 * kMaximumPatchCells> shared; // nodes of cells with both
   int sharedCount = 0;
-  if (++this->stamp_ == 0)
+  std::array<Index, 3 * kMaximumPatchCells> near; // nodes of cells with the node
+  int nearCount = 0;
+  std::uint64_t bits = 0; // of the lowest digits of those: most others have none of them
+  const auto bitOf = [](Index copy) { return std::uint64_t{ 1 } << (copy & 63); };
+  const auto isNear = [&](Index copy)
   {
-    std::fill(this->marks_.begin(), this->marks_.end(), 0);
-    this->stamp_ = 1;
-  }
+    const auto* end = near.begin() + nearCount;
+    return (bits & bitOf(copy)) != 0 && std::find(near.cbegin(), end, copy) != end;
+  };
   for (int i = 0; i < fan.cellCount; ++i)
   {
     const Index* cell = this->cell(slotOf(fan.corners[i]));
@@ -476,9 +479,10 @@ bool TriQuadTopology::keepsNeighbourRule(const Fan& fan, Index target)
       {
         continue;
       }
-      if (second || k == beside[0] || k == beside[1])
+      if ((second || k == beside[0] || k == beside[1]) && !isNear(cell[k]))
       {
-        this->marks_[cell[k]] = this->stamp_;
+        near[nearCount++] = cell[k];
+        bits |= bitOf(cell[k]);
       }
       if (both)
       {
@@ -494,7 +498,7 @@ bool TriQuadTopology::keepsNeighbourRule(const Fan& fan, Index target)
     for (int k = 0; k < kTriQuadCorners; ++k)
     {
       if (k != place && cell[k] != kNone && cell[k] != fan.copy &&
-        (second || k == beside[0] || k == beside[1]) && this->marks_[cell[k]] == this->stamp_ &&
+        (second || k == beside[0] || k == beside[1]) && isNear(cell[k]) &&
         std::find(shared.begin(), shared.begin() + sharedCount, cell[k]) ==
           shared.begin() + sharedCount)
       {

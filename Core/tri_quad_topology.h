@@ -152,10 +152,13 @@ public:
 
   /// Whether the copy of a fan may go to one of its neighbours. All copies of a node go together.
   /// @param fan gathered, and nothing was collapsed since
-  bool mayCollapse(const Fan& fan, Index target);
+  bool mayCollapse(const Fan& fan, Index target) const;
 
   /// Move the cells of the fan to a neighbour. What was gathered around here is out of date then.
   void collapse(const Fan& fan, Index target);
+
+  /// Copies that are left in the connected component of a copy.
+  Index componentSize(Index copy) const { return this->componentNodes_[this->component_[copy]]; }
 
   /// The cell with the edge of two copies that is not `slot`; kNone if there is none.
   Index cellAcross(Index copy, Index other, Index slot) const;
@@ -169,7 +172,7 @@ private:
   Index* cellAt(Index slot) { return this->cells_.data() + std::size_t{ kTriQuadCorners } * slot; }
   static int before(const Index* cell, int place);
   static int behind(const Index* cell, int place);
-  bool keepsNeighbourRule(const Fan& fan, Index target);
+  bool keepsNeighbourRule(const Fan& fan, Index target) const;
   bool keepsSheetsApart(const Fan& fan, Index target) const;
   bool hasTwin(const Fan& fan, int i, Index target) const;
   bool hasEdge(Index copy, Index other) const;
@@ -189,8 +192,6 @@ private:
   std::vector<TriQuadNodeKind> kinds_;
   std::vector<Index> component_;      // of a copy
   std::vector<Index> componentNodes_; // copies that are left in it
-  std::vector<std::uint32_t> marks_;  // copies that share a cell with the one at hand: stamp_
-  std::uint32_t stamp_ = 0;
 };
 
 } // namespace undecimate
