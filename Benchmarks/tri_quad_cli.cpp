@@ -5,7 +5,7 @@
 //
 //   tri_quad_cli SERIES [--steps 0,15,30] [--criterion deviation|quadrics] [--error max|sum]
 //                [--targets NODES,...] [--out PREFIX] [--quad-weight W] [--candidates K] [--parts]
-//                [--automatic FACTOR]
+//                [--automatic FACTOR] [--threads N]
 //
 // SERIES: int64 nodes, cells, steps, 1 if there are parts; float32 x, y, z of each node, step after
 // step; int32 cells of four corners, -1 at the last of triangles; int32 part of each cell.
@@ -108,6 +108,8 @@ int main(int argc, char** argv)
       options.quadWeight = std::atof(value.c_str());
     else if (option == "--automatic")
       factor = std::atof(value.c_str());
+    else if (option == "--threads")
+      options.threads = std::atoi(value.c_str());
     else if (option == "--candidates")
       options.candidates = std::atoi(value.c_str());
     else
@@ -159,12 +161,14 @@ int main(int argc, char** argv)
   TriQuadDecimationResult result;
   Monitor monitor;
   const double start = cpuSeconds();
+  const auto wallStart = std::chrono::steady_clock::now();
   std::vector<int> used(stepCount);
   std::iota(used.begin(), used.end(), 0);
   const Outcome outcome = factor > 0.0
     ? decimateTriQuadAutomatically(mesh, rows, options, factor, monitor, result, used)
     : decimateTriQuad(mesh, rows, options, monitor, result);
   const double seconds = cpuSeconds() - start;
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - wallStart;
   if (!outcome)
   {
     fail(outcome.message);
@@ -182,11 +186,12 @@ int main(int argc, char** argv)
     usedSteps += (usedSteps.empty() ? "" : ", ") + std::to_string(steps[step]);
   }
   std::printf(
-    "{\"used\": \"%s\", \"nodes\": %lld, \"cells\": %lld, \"steps\": %d, \"cpu\": %.4f, \"read\": "
+    "{\"used\": \"%s\", \"nodes\": %lld, \"cells\": %lld, \"steps\": %d, \"cpu\": %.4f, \"wall\": "
+    "%.4f, \"read\": "
     "%.4f, "
     "\"peak_kib\": %ld, \"record\": %zu, \"shapes\": %zu, \"stop\": \"%s\", \"levels\": [",
     usedSteps.c_str(), static_cast<long long>(header[0]), static_cast<long long>(header[1]),
-    stepCount, seconds, readSeconds, usage.ru_maxrss, result.record.byteSize(),
+    stepCount, seconds, wall.count(), readSeconds, usage.ru_maxrss, result.record.byteSize(),
     result.record.shapes.size(), toString(result.stopReason));
   std::sort(targets.begin(), targets.end());
   for (std::size_t i = 0; i < targets.size(); ++i)

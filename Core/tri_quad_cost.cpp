@@ -100,6 +100,7 @@ TriQuadCost::TriQuadCost(const TriQuadMeshView& mesh, TriQuadTopology& topology,
   , kept_(kept)
   , lanes_(positions.lanes())
   , mesh_(mesh)
+  , shared_(std::make_shared<Shared>())
 {
   this->arrayOffsets_.push_back(0);
   const bool steer = options.criterion == TriQuadCriterion::Deviation && options.scalarWeight > 0.0;
@@ -157,9 +158,9 @@ TriQuadCost::TriQuadCost(const TriQuadMeshView& mesh, TriQuadTopology& topology,
 
   if (options.criterion == TriQuadCriterion::Deviation)
   {
-    this->firstRemoved_.assign(topology.cellCount(), kNone);
-    this->nextRemoved_.assign(topology.copyCount(), kNone);
-    this->nextOnLine_.assign(topology.nodeCount(), kNone);
+    this->shared_->firstRemoved.assign(topology.cellCount(), kNone);
+    this->shared_->nextRemoved.assign(topology.copyCount(), kNone);
+    this->shared_->nextOnLine.assign(topology.nodeCount(), kNone);
     this->findOriginals();
     this->nearestPlaces_.resize(this->lanes_);
     this->cellRows_.resize(std::size_t{ 3 } * (kTriQuadCorners + 1) * this->lanes_);
@@ -180,23 +181,23 @@ void TriQuadCost::findOriginals()
 {
   const std::size_t corners = std::size_t{ kTriQuadCorners } * this->mesh_.cellCount;
   const Index* nodes = this->mesh_.cells;
-  this->firstOriginal_.assign(this->mesh_.nodeCount + 1, 0);
+  this->shared_->firstOriginal.assign(this->mesh_.nodeCount + 1, 0);
   for (std::size_t i = 0; i < corners; ++i)
   {
     if (nodes[i] != kNone)
     {
-      ++this->firstOriginal_[nodes[i]];
+      ++this->shared_->firstOriginal[nodes[i]];
     }
   }
   // The ends of the lists, which become their begins while they are filled.
-  std::partial_sum(
-    this->firstOriginal_.begin(), this->firstOriginal_.end(), this->firstOriginal_.begin());
-  this->originalsOf_.resize(this->firstOriginal_.back());
+  std::partial_sum(this->shared_->firstOriginal.begin(), this->shared_->firstOriginal.end(),
+    this->shared_->firstOriginal.begin());
+  this->shared_->originalsOf.resize(this->shared_->firstOriginal.back());
   for (std::size_t i = corners; i-- > 0;)
   {
     if (nodes[i] != kNone)
     {
-      this->originalsOf_[--this->firstOriginal_[nodes[i]]] =
+      this->shared_->originalsOf[--this->shared_->firstOriginal[nodes[i]]] =
         static_cast<Index>(i / kTriQuadCorners);
     }
   }
@@ -205,8 +206,8 @@ void TriQuadCost::findOriginals()
 void TriQuadCost::buildQuadrics()
 {
   const TriQuadTopology& t = this->topology_;
-  this->quadrics_.resize(std::size_t{ kQuadricRows } * this->lanes_ * t.nodeCount());
-  std::fill(this->quadrics_.begin(), this->quadrics_.end(), 0.0F);
+  this->shared_->quadrics.resize(std::size_t{ kQuadricRows } * this->lanes_ * t.nodeCount());
+  std::fill(this->shared_->quadrics.begin(), this->shared_->quadrics.end(), 0.0F);
   Fan fan;
   for (Index slot = 0; slot < t.cellCount(); ++slot)
   {
@@ -269,7 +270,8 @@ void TriQuadCost::buildQuadrics()
 void TriQuadCost::prefetch(Index node) const
 {
   __builtin_prefetch(this->positions_.at(node));
-  __builtin_prefetch(this->quadrics_.data() + std::size_t{ kQuadricRows } * this->lanes_ * node);
+  __builtin_prefetch(
+    this->shared_->quadrics.data() + std::size_t{ kQuadricRows } * this->lanes_ * node);
 }
 
 // The cells around a node, with all its copies. False if it may not go anywhere.
@@ -681,8 +683,8 @@ void TriQuadCost::measureRemoved(const TriQuadPatch& patch, int fan, unsigned ch
   measureCopy(patch.fans[fan].copy, this->position(0));
   for (int i = begin; i < end; ++i)
   {
-    for (Index copy = this->firstRemoved_[patch.slots[i]]; copy != kNone;
-         copy = this->nextRemoved_[copy])
+    for (Index copy = this->shared_->firstRemoved[patch.slots[i]]; copy != kNone;
+         copy = this->shared_->nextRemoved[copy])
     {
       subtract(lanes, 3, this->positions_.at(this->topology_.nodeOf(copy)),
         this->positions_.at(patch.node), this->point_.data());
@@ -763,12 +765,13 @@ void TriQuadCost::measureSampleBack(const float* point)
       continue;
     }
     const Index node = this->placeNodes_[*place];
-    for (Index k = this->firstOriginal_[node]; k < this->firstOriginal_[node + 1]; ++k)
+    for (Index k = this->shared_->firstOriginal[node]; k < this->shared_->firstOriginal[node + 1];
+         ++k)
     {
       const auto end = this->nearestOriginals_.end();
-      if (std::find(this->nearestOriginals_.begin(), end, this->originalsOf_[k]) == end)
+      if (std::find(this->nearestOriginals_.begin(), end, this->shared_->originalsOf[k]) == end)
       {
-        this->nearestOriginals_.push_back(this->originalsOf_[k]);
+        this->nearestOriginals_.push_back(this->shared_->originalsOf[k]);
       }
     }
   }
@@ -830,7 +833,7 @@ void TriQuadCost::measureBack(const TriQuadPatch& patch, unsigned char target)
   const int lanes = this->lanes_;
   const std::size_t size = std::size_t{ 3 } * lanes;
   this->placeNodes_.assign(patch.ring.begin(), patch.ring.begin() + patch.ringSize);
-  for (const Home& home : this->homes_)
+  for (const TriQuadPatch::Home& home : this->homes_)
   {
     this->placeNodes_.push_back(this->topology_.nodeOf(home.copy));
   }
@@ -876,8 +879,8 @@ void TriQuadCost::measureHalfwayBack(const float* corner)
 
 Index TriQuadCost::firstOnLine(Index a, Index b) const
 {
-  const auto found = this->lines_.find(lineKey(a, b));
-  return found == this->lines_.end() ? kNone : found->second;
+  const auto found = this->shared_->lines.find(lineKey(a, b));
+  return found == this->shared_->lines.end() ? kNone : found->second;
 }
 
 // The nodes removed from the two edges of a boundary that become one.
@@ -891,7 +894,7 @@ void TriQuadCost::measureLine(const TriQuadPatch& patch, unsigned char target)
   for (const unsigned char end : { target, other })
   {
     for (Index node = this->firstOnLine(patch.node, patch.ring[end - 1]); node != kNone;
-         node = this->nextOnLine_[node])
+         node = this->shared_->nextOnLine[node])
     {
       subtract(
         lanes, 3, this->positions_.at(node), this->positions_.at(patch.node), this->point_.data());
@@ -970,8 +973,8 @@ bool TriQuadCost::hasMore(const TriQuadPatch& patch) const
   int removed = 0;
   for (int i = 0; i < patch.cellCount && removed < kRemovedForFull; ++i)
   {
-    for (Index copy = this->firstRemoved_[patch.slots[i]]; copy != kNone;
-         copy = this->nextRemoved_[copy])
+    for (Index copy = this->shared_->firstRemoved[patch.slots[i]]; copy != kNone;
+         copy = this->shared_->nextRemoved[copy])
     {
       ++removed;
     }
@@ -1025,8 +1028,8 @@ bool TriQuadCost::evaluate(Index node, Effort effort, TriQuadPatch& patch)
       patch.error = error;
       patch.cost = cost;
       bestCopies = patch.targetCopies;
-      this->bestHomes_.swap(this->homes_);
-      this->bestSquares_ = this->squares_;
+      patch.homes.swap(this->homes_);
+      patch.squares = this->squares_;
     }
     ++compared;
   }
@@ -1044,18 +1047,18 @@ void TriQuadCost::collapsed(const TriQuadPatch& patch)
   {
     return;
   }
-  this->worst_.resize(this->lanes_, 0.0F);
-  raise(this->lanes_, this->bestSquares_.data(), this->worst_.data());
+  this->shared_->worst.resize(this->lanes_, 0.0F);
+  raise(this->lanes_, patch.squares.data(), this->shared_->worst.data());
   for (int i = 0; i < patch.cellCount; ++i)
   {
-    this->firstRemoved_[patch.slots[i]] = kNone;
+    this->shared_->firstRemoved[patch.slots[i]] = kNone;
   }
-  for (const Home& home : this->bestHomes_)
+  for (const TriQuadPatch::Home& home : patch.homes)
   {
     if (home.slot != kNone)
     {
-      this->nextRemoved_[home.copy] = this->firstRemoved_[home.slot];
-      this->firstRemoved_[home.slot] = home.copy;
+      this->shared_->nextRemoved[home.copy] = this->shared_->firstRemoved[home.slot];
+      this->shared_->firstRemoved[home.slot] = home.copy;
     }
   }
   if (patch.line[0] != 0)
@@ -1064,20 +1067,20 @@ void TriQuadCost::collapsed(const TriQuadPatch& patch)
     const unsigned char end = patch.line[0] == patch.target ? patch.line[1] : patch.line[0];
     const Index other = patch.ring[end - 1];
     Index first = patch.node;
-    this->nextOnLine_[first] = kNone;
+    this->shared_->nextOnLine[first] = kNone;
     for (const Index side : { target, other })
     {
       Index node = this->firstOnLine(patch.node, side);
-      this->lines_.erase(lineKey(patch.node, side));
+      this->shared_->lines.erase(lineKey(patch.node, side));
       while (node != kNone)
       {
-        const Index next = this->nextOnLine_[node];
-        this->nextOnLine_[node] = first;
+        const Index next = this->shared_->nextOnLine[node];
+        this->shared_->nextOnLine[node] = first;
         first = node;
         node = next;
       }
     }
-    this->lines_[lineKey(target, other)] = first;
+    this->shared_->lines[lineKey(target, other)] = first;
   }
 }
 
@@ -1096,7 +1099,7 @@ std::vector<double> TriQuadCost::distances(const TimeRows& positions) const
   std::vector<float> squares;
   for (Index slot = 0; slot < t.cellCount(); ++slot)
   {
-    if (this->firstRemoved_[slot] == kNone)
+    if (this->shared_->firstRemoved[slot] == kNone)
     {
       continue;
     }
@@ -1116,7 +1119,8 @@ std::vector<double> TriQuadCost::distances(const TimeRows& positions) const
       }
     }
     std::size_t samples = 0;
-    for (Index copy = this->firstRemoved_[slot]; copy != kNone; copy = this->nextRemoved_[copy])
+    for (Index copy = this->shared_->firstRemoved[slot]; copy != kNone;
+         copy = this->shared_->nextRemoved[copy])
     {
       points.resize(std::max(points.size(), 3 * lanes * (samples + 1)));
       subtract(lanes, 3, positions.at(t.nodeOf(copy)), origin, points.data() + 3 * lanes * samples);
@@ -1163,9 +1167,9 @@ std::vector<double> TriQuadCost::distances(const TimeRows& positions) const
 std::vector<double> TriQuadCost::stepErrors() const
 {
   std::vector<double> errors;
-  for (int i = 0; i < this->positions_.steps() && !this->worst_.empty(); ++i)
+  for (int i = 0; i < this->positions_.steps() && !this->shared_->worst.empty(); ++i)
   {
-    errors.push_back(std::sqrt(static_cast<double>(this->worst_[i])));
+    errors.push_back(std::sqrt(static_cast<double>(this->shared_->worst[i])));
   }
   return errors;
 }

@@ -16,6 +16,7 @@
 #include "tri_quad_topology.h"
 
 #include <array>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -50,6 +51,15 @@ struct TriQuadPatch
   /// The copies of the target, one for each fan.
   std::array<Index, kMaximumFans> targetCopies;
 
+  /// The cell that a removed copy lies in.
+  struct Home
+  {
+    Index copy;
+    Index slot;
+  };
+  std::vector<Home> homes;    ///< once the node has gone; Deviation only
+  std::vector<float> squares; ///< of the errors, of each lane; Deviation only
+
   /// A cell after the node has gone to a target.
   /// @param[out] corners local numbers, kNoLocal where there is none
   /// @return number of corners; 0 if the cell vanishes
@@ -71,6 +81,10 @@ public:
   TriQuadCost(const TriQuadMeshView& mesh, TriQuadTopology& topology, const TimeRows& positions,
     const TriQuadDecimationOptions& options, std::vector<unsigned char>& kept);
 
+  /// For another thread: with the same mesh, quadrics and removed nodes, and scratch of its own.
+  /// All may evaluate at the same time, but not while one takes note of a collapse.
+  TriQuadCost forThread() const { return *this; }
+
   enum class Effort
   {
     Estimate, ///< Deviation of the neighbour that is best by the quadrics, without the way back
@@ -80,13 +94,16 @@ public:
   /// Find where a node goes best.
   /// @param effort Full is for Deviation only; the Quadrics know no other than Estimate
   /// @return false if it cannot go anywhere; the patch is then not to be used
+  /// It reads cells, quadrics and removed nodes at the node and its ring only, and how many nodes
+  /// are left in the components of its copies.
   bool evaluate(Index node, Effort effort, TriQuadPatch& patch);
 
   /// Whether the full effort is worth it for a patch that was estimated: not with Quadrics, and not
   /// as long as few nodes were removed from it.
   bool hasMore(const TriQuadPatch& patch) const;
 
-  /// Take note that the collapse of the last evaluate() is made. Call before the topology changes.
+  /// Take note that the collapse of a patch that was evaluated is made. Call before the topology
+  /// changes.
   void collapsed(const TriQuadPatch& patch);
 
   /// Distance of the removed nodes to the cells that they lie in now, the largest at each step of
@@ -105,7 +122,7 @@ private:
   }
   float* quadric(Index node)
   {
-    return this->quadrics_.data() + std::size_t{ kQuadricRows } * this->lanes_ * node;
+    return this->shared_->quadrics.data() + std::size_t{ kQuadricRows } * this->lanes_ * node;
   }
   void buildQuadrics();
   bool gather(Index node, TriQuadPatch& patch);
@@ -154,20 +171,27 @@ private:
   const TriQuadDecimationOptions& options_;
   const std::vector<unsigned char>& kept_;
   int lanes_;
-  LargeArray<float, 3> quadrics_; // of each node: kQuadricRows rows
+  const TriQuadMeshView& mesh_;
   std::vector<float> arrayScales_;
   std::vector<int> arrayOffsets_; // first row of each array among all, and the end
 
-  // Removed copies: a list for each cell, and one of nodes for each boundary edge (by its ends).
-  std::vector<Index> firstRemoved_; // of a slot
-  std::vector<Index> nextRemoved_;  // of a copy
-  std::vector<Index> nextOnLine_;   // of a node
-  std::unordered_map<std::uint64_t, Index> lines_;
+  // What the threads have in common.
+  struct Shared
+  {
+    LargeArray<float, 3> quadrics; // of each node: kQuadricRows rows
 
-  // The input's cells, and the numbers of those around each node.
-  const TriQuadMeshView& mesh_;
-  LargeArray<Index, 0> firstOriginal_; // of a node, in originalsOf_; and the end
-  LargeArray<Index, 1> originalsOf_;
+    // Removed copies: a list for each cell, and one of nodes for each boundary edge (by its ends).
+    std::vector<Index> firstRemoved; // of a slot
+    std::vector<Index> nextRemoved;  // of a copy
+    std::vector<Index> nextOnLine;   // of a node
+    std::unordered_map<std::uint64_t, Index> lines;
+    std::vector<float> worst; // square at each lane, largest of all collapses
+
+    // The numbers of the input's cells around each node.
+    LargeArray<Index, 0> firstOriginal; // of a node, in originalsOf; and the end
+    LargeArray<Index, 1> originalsOf;
+  };
+  std::shared_ptr<Shared> shared_;
 
   // The patch at hand.
   const TriQuadPatch* patch_ = nullptr;
@@ -187,17 +211,9 @@ private:
   std::vector<float> nearest_;
   std::vector<float> cellNearest_;
   std::vector<float> errors_;
-  std::vector<float> squares_;     // largest over all samples
-  double limit_ = 0.0;             // of the error: a target beyond it is not measured to the end
-  std::vector<float> bestSquares_; // of the target that was chosen
-  std::vector<float> worst_;       // largest of all collapses
-  struct Home
-  {
-    Index copy;
-    Index slot;
-  };
-  std::vector<Home> homes_;     // of the target measured last
-  std::vector<Home> bestHomes_; // of the one that was chosen
+  std::vector<float> squares_; // largest over all samples
+  double limit_ = 0.0;         // of the error: a target beyond it is not measured to the end
+  std::vector<TriQuadPatch::Home> homes_; // of the target measured last
   // For the way back to the original cells.
   std::vector<Index> placeNodes_;       // the nodes of the patch and those removed from it
   std::vector<float> places_;           // their positions

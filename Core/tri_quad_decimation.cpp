@@ -4,6 +4,7 @@
 #include "tri_quad_decimation.h"
 
 #include "guarded.h"
+#include "threads.h"
 #include "tri_quad_cost.h"
 
 #include <algorithm>
@@ -16,22 +17,38 @@ namespace undecimate
 namespace
 {
 
+// Nodes of a job when all are evaluated.
+constexpr Index kNodesOfJob = 1 << 10;
+
 // Share of the progress that the first evaluation gets.
 constexpr double kEvaluationShare = 0.15;
 
+/// Removes one node after the other. Several threads evaluate the next nodes of the queue ahead of
+/// their turns; what has changed around a node since then is evaluated again in its turn. So the
+/// order of the removals is that of one thread.
 class TriQuadDecimation
 {
 public:
   TriQuadDecimation(TriQuadTopology& topology, TriQuadCost& cost,
     const std::vector<unsigned char>& kept, const TriQuadDecimationOptions& options,
-    Monitor& monitor)
+    Monitor& monitor, Threads& threads)
     : topology_(topology)
     , cost_(cost)
     , kept_(kept)
     , options_(options)
     , monitor_(monitor)
+    , threads_(threads)
     , nodesLeft_(topology.nodeCount())
   {
+    for (int thread = 1; thread < threads.count(); ++thread)
+    {
+      this->otherCosts_.push_back(cost.forThread());
+    }
+    if (threads.count() > 1)
+    {
+      this->ahead_.resize(kAhead);
+      this->changed_.assign(topology.nodeCount(), 0);
+    }
     // The rounding of 1 - 0.9 must not ask for a node more or less.
     const double left = (1.0 - options.targetReduction) * topology.nodeCount();
     this->goal_ = static_cast<Index>(std::ceil(left * (1.0 - 1e-12)));
@@ -70,6 +87,7 @@ public:
         return Status::Cancelled;
       }
       const Index interval = queue.lowestInterval();
+      Evaluation* const ahead = this->ahead(queue);
       const Index node = queue.pop();
       if (node == kNone)
       {
@@ -77,27 +95,35 @@ public:
         break;
       }
       this->prefetch(queue);
+      Evaluation& evaluation = ahead ? *ahead : this->alone_;
+      if (!ahead)
+      {
+        estimate(this->cost_, node, evaluation);
+      }
+      evaluation.node = kNone;
       // A node that cannot go now waits outside the queue until a neighbour goes.
-      if (!this->cost_.evaluate(node, TriQuadCost::Effort::Estimate, this->patch_) ||
-        this->waits(queue, node, interval))
+      if (!evaluation.mayGo || waits(queue, node, interval, evaluation.estimated))
       {
         continue;
       }
-      if (this->cost_.hasMore(this->patch_))
+      if (evaluation.hasMore)
       {
-        this->cost_.evaluate(node, TriQuadCost::Effort::Full, this->patch_);
-        if (this->waits(queue, node, interval))
+        if (!evaluation.full)
+        {
+          finish(this->cost_, node, evaluation);
+        }
+        if (waits(queue, node, interval, intervalOf(evaluation.patch)))
         {
           continue;
         }
       }
-      if (this->patch_.error > this->options_.maximumError)
+      if (evaluation.patch.error > this->options_.maximumError)
       {
         tooCostly = true;
         continue;
       }
-      this->remove(builder);
-      this->reinsertRing(queue, interval);
+      this->remove(evaluation.patch, builder);
+      this->reinsertRing(evaluation.patch, queue, interval);
     }
     result.error = builder.error();
     result.stepErrors = this->cost_.stepErrors();
@@ -115,28 +141,210 @@ public:
   }
 
 private:
+  // Nodes that are evaluated ahead of their turns: enough to keep the threads busy, and few enough
+  // that most removals are far from those to come: a share of the queue, up to kAhead. When half of
+  // them have gone, new ones are fetched.
+  static constexpr int kAhead = 128;
+  static constexpr int kShareAhead = 64;
+
+  // In a component with so many copies P3 holds for all nodes, and so it will for the next one.
+  static constexpr Index kManyCopies = TriQuadPatch::kMaximumFans + 4;
+
+  // Of a node.
+  struct Evaluation
+  {
+    Index node = kNone;
+    std::uint32_t removals = 0; // before it
+    bool mayGo = false;
+    bool hasMore = false; // the full effort is worth it,
+    bool full = false;    // and has been made
+    Index estimated = 0;  // interval
+    TriQuadPatch patch;
+  };
+
+  static Index intervalOf(const TriQuadPatch& patch)
+  {
+    return logarithmicInterval(static_cast<float>(patch.cost));
+  }
+
+  static void estimate(TriQuadCost& cost, Index node, Evaluation& evaluation)
+  {
+    evaluation.node = node;
+    evaluation.full = false;
+    evaluation.mayGo = cost.evaluate(node, TriQuadCost::Effort::Estimate, evaluation.patch);
+    evaluation.hasMore = evaluation.mayGo && cost.hasMore(evaluation.patch);
+    evaluation.estimated = evaluation.mayGo ? intervalOf(evaluation.patch) : kNone;
+  }
+
+  static void finish(TriQuadCost& cost, Index node, Evaluation& evaluation)
+  {
+    cost.evaluate(node, TriQuadCost::Effort::Full, evaluation.patch);
+    evaluation.full = true;
+  }
+
+  TriQuadCost& costOf(int thread)
+  {
+    return thread == 0 ? this->cost_ : this->otherCosts_[thread - 1];
+  }
+
   bool evaluateAll(HashQueue& queue)
   {
+    // In blocks, so that the user can cancel.
     const Index count = this->topology_.nodeCount();
-    for (Index node = 0; node < count; ++node)
+    const Index block = kNodesOfJob * this->threads_.count();
+    std::vector<Index> intervals(std::min(block, count));
+    std::vector<TriQuadPatch> patches(this->threads_.count());
+    for (Index begin = 0; begin < count; begin += std::min(block, count - begin))
     {
-      if ((node & 255) == 0 && !this->monitor_.update(kEvaluationShare * node / count))
+      if (!this->monitor_.update(kEvaluationShare * begin / count))
       {
         return false;
       }
-      if (!this->kept_[node] &&
-        this->cost_.evaluate(node, TriQuadCost::Effort::Estimate, this->patch_))
+      const Index size = std::min(block, count - begin);
+      this->threads_.run((size + kNodesOfJob - 1) / kNodesOfJob,
+        [&](Index job, int thread)
+        {
+          TriQuadPatch& patch = patches[thread];
+          const Index end = std::min(size, (job + 1) * kNodesOfJob);
+          for (Index i = job * kNodesOfJob; i < end; ++i)
+          {
+            const bool mayGo = !this->kept_[begin + i] &&
+              this->costOf(thread).evaluate(begin + i, TriQuadCost::Effort::Estimate, patch);
+            intervals[i] = mayGo ? intervalOf(patch) : kNone;
+          }
+        });
+      for (Index i = 0; i < size; ++i)
       {
-        queue.insert(node, logarithmicInterval(static_cast<float>(this->patch_.cost)));
+        if (intervals[i] != kNone)
+        {
+          queue.insert(begin + i, intervals[i]);
+        }
       }
     }
     return true;
   }
 
-  // Whether others are to go before the node that was evaluated; it is in the queue again then.
-  bool waits(HashQueue& queue, Index node, Index interval) const
+  // What is known of the node whose turn it is; null if nothing.
+  Evaluation* ahead(const HashQueue& queue)
   {
-    const Index current = logarithmicInterval(static_cast<float>(this->patch_.cost));
+    if (this->ahead_.empty() || queue.empty())
+    {
+      return nullptr;
+    }
+    Evaluation* found = this->find(queue.front());
+    if (!found && ++this->missed_ + this->used_ > this->wanted_ / 2)
+    {
+      this->evaluateAhead(queue);
+      found = this->find(queue.front());
+    }
+    this->used_ += found ? 1 : 0;
+    return found;
+  }
+
+  // An evaluation that still holds. Most are found in the order in which they were made.
+  Evaluation* find(Index node)
+  {
+    for (int i = 0; i < kAhead; ++i)
+    {
+      Evaluation& evaluation = this->ahead_[(this->next_ + i) % kAhead];
+      if (evaluation.node == node)
+      {
+        if (!this->holds(evaluation))
+        {
+          evaluation.node = kNone;
+          return nullptr;
+        }
+        this->next_ = (this->next_ + i + 1) % kAhead;
+        return &evaluation;
+      }
+    }
+    return nullptr;
+  }
+
+  // Whether nothing that it depends on has changed: what TriQuadCost::evaluate() reads.
+  bool holds(const Evaluation& evaluation) const
+  {
+    const Index node = evaluation.node;
+    if (this->changed_[node] > evaluation.removals)
+    {
+      return false;
+    }
+    // Only then the cells of the patch are those around the node.
+    const TriQuadPatch& patch = evaluation.patch;
+    for (Index copy = node; copy != kNone; copy = this->topology_.nextCopy(copy))
+    {
+      if (this->topology_.componentSize(copy) < kManyCopies)
+      {
+        return false;
+      }
+    }
+    return std::all_of(patch.ring.begin(), patch.ring.begin() + patch.ringSize,
+      [&](Index other) { return this->changed_[other] <= evaluation.removals; });
+  }
+
+  // Evaluate the next nodes of the queue.
+  void evaluateAhead(const HashQueue& queue)
+  {
+    this->missed_ = 0;
+    this->used_ = 0;
+    this->next_ = 0;
+    this->wanted_ = std::min<Index>(kAhead, queue.size() / kShareAhead);
+    if (this->wanted_ < this->threads_.count())
+    {
+      return;
+    }
+    std::array<Index, kAhead> nodes;
+    int count = 0;
+    for (Index node = queue.front(); node != kNone && count < this->wanted_;
+         node = queue.upcoming(node))
+    {
+      nodes[count++] = node;
+    }
+    // Those that are known and still hold stay as they are.
+    std::array<Evaluation*, kAhead> unused;
+    std::array<Index, kAhead> unknown;
+    const auto end = nodes.begin() + count;
+    auto last = unknown.begin();
+    int unusedCount = 0;
+    std::array<bool, kAhead> known{};
+    for (Evaluation& evaluation : this->ahead_)
+    {
+      const auto found = std::find(nodes.begin(), end, evaluation.node);
+      if (evaluation.node != kNone && found != end && this->holds(evaluation))
+      {
+        known[found - nodes.begin()] = true;
+      }
+      else
+      {
+        evaluation.node = kNone;
+        unused[unusedCount++] = &evaluation;
+      }
+    }
+    for (int i = 0; i < count; ++i)
+    {
+      if (!known[i])
+      {
+        *last++ = nodes[i];
+      }
+    }
+    const Index highest = count > 0 ? queue.interval(nodes[count - 1]) : 0;
+    this->threads_.run(static_cast<Index>(last - unknown.begin()),
+      [&](Index job, int thread)
+      {
+        Evaluation& evaluation = *unused[job];
+        TriQuadCost& cost = this->costOf(thread);
+        evaluation.removals = this->removals_;
+        estimate(cost, unknown[job], evaluation);
+        if (evaluation.hasMore && evaluation.estimated <= highest)
+        {
+          finish(cost, unknown[job], evaluation);
+        }
+      });
+  }
+
+  // Whether others are to go before a node that was evaluated; it is in the queue again then.
+  static bool waits(HashQueue& queue, Index node, Index interval, Index current)
+  {
     if (current > interval && !queue.empty() && current > queue.lowestInterval())
     {
       queue.insert(node, current);
@@ -157,11 +365,10 @@ private:
 
   // Make the collapse that was found, and write it down. Cells that stay come first, each fan's in
   // the order around the node, so that equal patches are equal steps.
-  void remove(RecordBuilder& builder)
+  void remove(const TriQuadPatch& patch, RecordBuilder& builder)
   {
-    const TriQuadPatch& patch = this->patch_;
     std::array<int, kMaximumPatchCells> order;
-    this->orderCells(order);
+    orderCells(patch, order);
     std::array<Index, kMaximumPatchCells> slots;
     std::array<std::array<unsigned char, 4>, kMaximumPatchCells> oldCells;
     std::array<std::array<unsigned char, 4>, kMaximumPatchCells> newCells;
@@ -193,6 +400,14 @@ private:
       this->topology_.collapse(patch.fans[f], patch.targetCopies[f]);
     }
     --this->nodesLeft_;
+    if (!this->changed_.empty())
+    {
+      ++this->removals_;
+      for (int i = 0; i < patch.ringSize; ++i)
+      {
+        this->changed_[patch.ring[i]] = this->removals_;
+      }
+    }
   }
 
   static std::array<unsigned char, 4> emptyCornerLast(std::array<unsigned char, 4> cell)
@@ -202,9 +417,8 @@ private:
   }
 
   // Around the node, from a cell with the target on.
-  void orderCells(std::array<int, kMaximumPatchCells>& order) const
+  static void orderCells(const TriQuadPatch& patch, std::array<int, kMaximumPatchCells>& order)
   {
-    const TriQuadPatch& patch = this->patch_;
     std::array<bool, kMaximumPatchCells> taken{};
     int count = 0;
     unsigned char edge = patch.target;
@@ -234,12 +448,12 @@ private:
     return beside != kNoLocal ? beside : cell[(place + 2) & 3];
   }
 
-  void reinsertRing(HashQueue& queue, Index interval)
+  void reinsertRing(const TriQuadPatch& patch, HashQueue& queue, Index interval)
   {
-    for (int i = 0; i < this->patch_.ringSize; ++i)
+    for (int i = 0; i < patch.ringSize; ++i)
     {
       // Evaluated when its turn comes; one that waits outside gets a new chance.
-      const Index node = this->patch_.ring[i];
+      const Index node = patch.ring[i];
       if (!this->kept_[node])
       {
         queue.insert(node, queue.contains(node) ? queue.interval(node) : interval);
@@ -252,10 +466,19 @@ private:
   const std::vector<unsigned char>& kept_;
   const TriQuadDecimationOptions& options_;
   Monitor& monitor_;
+  Threads& threads_;
+  std::vector<TriQuadCost> otherCosts_; // of the threads but the first
   Index nodesLeft_;
   Index goal_ = 0;
   StopReason goalReason_ = StopReason::TargetReduction;
-  TriQuadPatch patch_;
+  Evaluation alone_;              // of the node at hand if it was not evaluated before
+  std::vector<Evaluation> ahead_; // empty with one thread
+  std::uint32_t removals_ = 0;
+  std::vector<std::uint32_t> changed_; // removals when the cells of a node or its ring changed last
+  int next_ = 0;                       // where in ahead_ the next node should be
+  int used_ = 0;                       // since the last ones were evaluated
+  int missed_ = 0;
+  int wanted_ = 0; // of them
 };
 
 Outcome checkOptions(const TriQuadDecimationOptions& options, const TimeRows& positions)
@@ -382,12 +605,14 @@ Outcome checkInput(
 Outcome run(const TriQuadMeshView& mesh, const TimeRows& positions,
   const TriQuadDecimationOptions& options, Monitor& monitor, TriQuadDecimationResult& result)
 {
+  Threads threads(options.threads);
   TriQuadTopology topology(mesh);
   std::vector<unsigned char> kept = findKeptNodes(mesh, topology, options.preserveBoundary, result);
   const auto before = std::count(kept.begin(), kept.end(), 0);
   TriQuadCost cost(mesh, topology, positions, options, kept);
   result.nonFiniteNodes = static_cast<Index>(before - std::count(kept.begin(), kept.end(), 0));
-  const Status status = TriQuadDecimation(topology, cost, kept, options, monitor).run(result);
+  const Status status =
+    TriQuadDecimation(topology, cost, kept, options, monitor, threads).run(result);
   return { status, status == Status::Cancelled ? "Cancelled." : "" };
 }
 

@@ -93,6 +93,9 @@ struct TriQuadDecimationOptions
   /// Neighbours of a node, best first by quadrics, that Deviation compares before the node goes if
   /// several nodes have been removed around it. 1 or more.
   int candidates = 4;
+
+  /// Threads; the result does not depend on their number. 0 or less = as many as cores.
+  int threads = 0;
 };
 
 struct TriQuadDecimationResult

@@ -567,6 +567,55 @@ TEST(TriQuadDecimation, RefusesWhatDoesNotFit)
   refuse(broken.view(), rows, options, "Cell 2");
 }
 
+void expectSame(const Decimated& a, const Decimated& b)
+{
+  const Record& first = a.result.record;
+  const Record& second = b.result.record;
+  EXPECT_EQ(a.result.stopReason, b.result.stopReason);
+  EXPECT_EQ(a.result.error, b.result.error);
+  EXPECT_EQ(a.result.stepErrors, b.result.stepErrors);
+  EXPECT_EQ(a.result.baseCells, b.result.baseCells);
+  EXPECT_EQ(first.nodeOrder, second.nodeOrder);
+  EXPECT_EQ(first.cellOrder, second.cellOrder);
+  EXPECT_EQ(first.stepShapes, second.stepShapes);
+  EXPECT_EQ(first.stepErrors, second.stepErrors);
+  EXPECT_EQ(first.patches, second.patches);
+  EXPECT_EQ(first.shapes, second.shapes);
+}
+
+TEST(TriQuadDecimation, ThreadsDoNotChangeTheResult)
+{
+  std::mt19937 random(8);
+  // The large one is evaluated ahead for long, the others have parts, seams and few nodes.
+  std::vector<MixedMesh> meshes{ testing::mixedGrid(60, 55, false, false, 0.3, random),
+    testing::mixedBox(9, 0.2, random), testing::mixedTJoint(14),
+    testing::mixedGrid(12, 8, true, true, 0.5, random) };
+  for (std::size_t m = 0; m < meshes.size(); ++m)
+  {
+    MixedMesh& mesh = meshes[m];
+    mesh.addSteps(3, wave);
+    for (std::size_t c = 0; m == 0 && c < mesh.cells.size(); ++c)
+    {
+      mesh.parts.push_back(c < mesh.cells.size() / 2 ? 1 : 2);
+    }
+    for (const TriQuadCriterion criterion :
+      { TriQuadCriterion::Deviation, TriQuadCriterion::Quadrics })
+    {
+      TriQuadDecimationOptions options = all(criterion);
+      options.timeError = m == 1 ? TimeError::Sum : TimeError::Maximum;
+      options.quadWeight = m == 2 ? 0.01 : 0.0;
+      options.threads = 1;
+      const Decimated alone(mesh, options);
+      for (const int threads : { 2, 3 })
+      {
+        SCOPED_TRACE(std::to_string(m) + " " + std::to_string(threads) + " threads");
+        options.threads = threads;
+        expectSame(alone, Decimated(mesh, options));
+      }
+    }
+  }
+}
+
 TEST(TriQuadDecimation, CanBeCancelled)
 {
   std::mt19937 random(3);
