@@ -248,11 +248,13 @@ def scale_table(bench, all_series):
         for tile in range(110):
             np.where(cells < 0, -1, cells + n * tile).astype(np.int32).tofile(f)
     target = round(.04 * 110 * n)
-    print("| steps | nodes | CPU s | peak GiB | record MB | one level to the next by 1 %, ms |\n|---|--:|--:|--:|--:|--:|")
+    print("| steps | nodes | CPU s | wall s | peak GiB | record MB | one level to the next by 1 %, ms |\n"
+          "|---|--:|--:|--:|--:|--:|--:|")
     out = []
     for label, options in (("25", []), ("3", ["--steps", "0,12,24"])):
         report, _ = bench.ours(file, [target, target + round(.01 * 110 * n)], *options)
-        print(f"| {label} | {report['nodes']} | {report['cpu']:.1f} | {report['peak_kib'] / 2**20:.2f} | "
+        print(f"| {label} | {report['nodes']} | {report['cpu']:.1f} | {report['wall']:.1f} | "
+              f"{report['peak_kib'] / 2**20:.2f} | "
               f"{report['record'] / 1e6:.0f} | {1e3 * report['levels'][1]['move']:.1f} |", flush=True)
         out.append(report)
     return out
