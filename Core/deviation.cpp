@@ -1469,10 +1469,8 @@ double DeviationCriterion::confirm(const Hole& hole, HoleTriangulation& filling,
   {
     const double error = in.error() * in.error();
     const double square = in.reverseSquare(hole, filling, in.betweenSquare(hole, filling, error));
-    if (square > error)
-    {
-      in.best.squares.include({ square, 0.0 });
-    }
+    // Arrays count no less in a small hole than in a mean one.
+    in.best.squares.include({ square, 0.0 });
   }
   cost = in.cost();
   return in.error();

@@ -414,7 +414,7 @@ TEST(Decimation, NamesCellsThatAreNotTriangles)
 {
   vtkSmartPointer<vtkPolyData> mesh =
     makeMesh({ 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0, 3, 0.5, 0 },
-      { { 0, 1, 2, 3 }, { 1, 4, 6, 5, 2 }, { 0, 1 }, { 0, 1, 2, 3 } });
+      { { 0, 1, 2, 3 }, { 1, 4, 6, 5, 2 }, { 0, 1 }, { 0, 1, 2 } });
   const vtkIdType strip[] = { 0, 1, 3, 2 };
   vtkNew<vtkCellArray> strips;
   strips->InsertNextCell(4, strip);
@@ -654,15 +654,15 @@ TEST(Decimation, PointsWithoutTrianglesPassThrough)
 TEST(Decimation, RefusesCellsWithPointsThatDoNotExist)
 {
   Decimation filter;
-  expectError(filter, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2, 3 }, { 0, 1, 7 } }),
+  expectError(filter, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2 }, { 0, 1, 7 } }),
     { "Face 1", "point 7", "3 points" });
   Decimation negative;
   expectError(
     negative, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, -1, 2 } }), { "Face 0", "point -1" });
   Decimation pointless;
-  expectError(pointless, makeMesh({}, { { 0, 1, 2, 3 } }), { "Face 0", "0 points" });
+  expectError(pointless, makeMesh({}, { { 0, 1, 2 } }), { "Face 0", "0 points" });
   Decimation line;
-  vtkSmartPointer<vtkPolyData> mesh = makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2, 3 } });
+  vtkSmartPointer<vtkPolyData> mesh = makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2 } });
   const vtkIdType ids[] = { 0, 3 };
   vtkNew<vtkCellArray> lines;
   lines->InsertNextCell(2, ids);

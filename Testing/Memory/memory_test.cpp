@@ -221,7 +221,7 @@ int main(int argc, char* argv[])
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::WithSources, 235);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Parallel, 255);
   measure(grid, "Deviation", Criterion::Deviation, Way::Parallel, 295);
-  measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 3, 420);
+  measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 3, 490);
   measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 25, 1700);
   measureOverTime(grid, "Quadrics", TriQuadCriterion::Quadrics, 25, 1700);
   return faults == 0 ? 0 : 1;
