@@ -8,7 +8,8 @@
 /// reached by walking the record, and each is written as a mesh file of its own.
 ///
 ///   decimate_cli MESH --targets 1000,500,100 [--out PREFIX] [--reps N] [--time-each]
-///     [--criterion deviation|scalar|angle|quadric] [--scalar-weight W] [--spacing log|exp]
+///     [--criterion deviation|scalar|angle|quadric] [--scalar-weight W]
+///     [--shape-weight W] [--spacing log|exp]
 ///     [--interval-nodes K] [--preserve-boundary] [--maximum-error E] [--threads N]
 ///
 /// A mesh file is six int64 (nodes, triangles, bytes of a coordinate, components of the nodal array
@@ -200,6 +201,10 @@ int main(int argc, char** argv)
     else if (word == "--scalar-weight")
     {
       options.scalarWeight = std::atof(value.c_str());
+    }
+    else if (word == "--shape-weight")
+    {
+      options.shapeWeight = std::atof(value.c_str());
     }
     else if (word == "--spacing")
     {

@@ -28,7 +28,8 @@
 /// lie on a neighbour.
 ///
 /// Cost and error are two things: the queue goes by the error times the 16th root of the hole's
-/// area, that of arrays times its square root, for the sake of the mean error (deviation.md).
+/// area, that of arrays times its square root, for the sake of the mean error (deviation.md); a
+/// shape weight makes holes that leave bad triangles wait.
 ///
 /// Samples are relative to the removed node and in single precision; orientation is decided in
 /// double precision.
@@ -51,10 +52,17 @@ public:
   /// Neighbours of a removed node are evaluated when their turn comes.
   static constexpr bool kLazy = true;
 
+  /// As in HashQueueDecimationOptions.
+  struct Weights
+  {
+    double scalar;
+    double shape;
+  };
+
   /// Nodes where an array is NaN or infinite are kept from now on.
   /// @param topology with the positions of the nodes
   DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
-    const std::vector<NodalArrayView>& arrays, double scalarWeight);
+    const std::vector<NodalArrayView>& arrays, const Weights& weights);
   ~DeviationCriterion();
   DeviationCriterion(DeviationCriterion&& other) noexcept;
 

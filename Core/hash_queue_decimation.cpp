@@ -90,40 +90,14 @@ public:
       this->prefetch(queue);
       // Steps 3 to 5: remove it with its triangles and triangulate the hole. A node that cannot go
       // now waits outside the queue until a neighbour goes.
-      double cost = 0.0;
-      if (!this->criterion_.retriangulate(node, this->hole_, this->filling_, cost))
+      const Verdict verdict = tryRemoval(node, interval, intervals.count(), this->goal_.error,
+        intervals, this->criterion_, queue, this->removal_);
+      tooCostly = tooCostly || verdict == Verdict::TooCostly;
+      if (verdict != Verdict::Remove)
       {
         continue;
       }
-      const auto mustWait = [&]
-      {
-        const Index current = intervals.of(cost);
-        if (current > interval && current > queue.lowestInterval() && !queue.empty())
-        {
-          queue.insert(node, current);
-          return true;
-        }
-        return false;
-      };
-      if (mustWait())
-      {
-        continue;
-      }
-      double error = cost;
-      if constexpr (CriterionType::kLazy)
-      {
-        error = this->criterion_.confirm(this->hole_, this->filling_, cost);
-        if (cost == HUGE_VAL || mustWait()) // infinite: cannot go now
-        {
-          continue;
-        }
-      }
-      if (error > this->goal_.error)
-      {
-        tooCostly = true;
-        continue;
-      }
-      this->remove(builder, error);
+      this->remove(builder);
       // Step 6: re-evaluate the neighbours; they go to the end of their interval's queue.
       this->reevaluate(queue, intervals, interval);
       // Step 7: back to step 2.
@@ -211,20 +185,23 @@ private:
     }
   }
 
-  void remove(RecordBuilder& builder, double error)
+  void remove(RecordBuilder& builder)
   {
-    builder.append(this->step_.of(this->topology_, this->hole_, this->filling_, error));
-    this->topology_.replace(this->hole_, this->filling_);
-    this->criterion_.removed(this->hole_, this->filling_);
-    this->trianglesLeft_ -= this->hole_.triangleCount - this->filling_.count;
+    const Hole& hole = this->removal_.hole;
+    const HoleTriangulation& filling = this->removal_.filling;
+    builder.append(this->step_.of(this->topology_, hole, filling, this->removal_.error));
+    this->topology_.replace(hole, filling);
+    this->criterion_.removed(hole, filling);
+    this->trianglesLeft_ -= hole.triangleCount - filling.count;
     --this->nodesLeft_;
   }
 
   void reevaluate(Queue& queue, const Intervals& intervals, Index interval)
   {
-    for (int i = 0; i < this->hole_.size; ++i)
+    const Hole& hole = this->removal_.hole;
+    for (int i = 0; i < hole.size; ++i)
     {
-      const Index node = this->hole_.ring[i];
+      const Index node = hole.ring[i];
       if (this->topology_.node(node).kept)
       {
         continue;
@@ -232,7 +209,7 @@ private:
       if constexpr (kIsQuadric)
       {
         double expected = 0.0;
-        if (this->criterion_.expect(node, this->hole_, expected))
+        if (this->criterion_.expect(node, hole, expected))
         {
           queue.insert(node, intervals.of(expected));
           continue;
@@ -264,8 +241,7 @@ private:
   Index nodeCount_;
   Index trianglesLeft_;
   Index nodesLeft_;
-  Hole hole_;
-  HoleTriangulation filling_;
+  Removal removal_;
   RecordedStep step_;
 };
 
@@ -309,6 +285,10 @@ Outcome checkOptions(const HashQueueDecimationOptions& options)
   if (!(options.scalarWeight >= 0.0) || !std::isfinite(options.scalarWeight))
   {
     return invalid("ScalarWeight", options.scalarWeight, "0 or more, and finite");
+  }
+  if (!(options.shapeWeight >= 0.0) || !std::isfinite(options.shapeWeight))
+  {
+    return invalid("ShapeWeight", options.shapeWeight, "0 or more, and finite");
   }
   if (options.parallel && options.criterion == Criterion::Quadric)
   {
@@ -429,7 +409,8 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
   const NodalArrayView* array =
     options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr;
   const Status status = options.criterion == Criterion::Deviation
-    ? decimateBy(DeviationCriterion(mesh, topology, options.arrays, options.scalarWeight))
+    ? decimateBy(DeviationCriterion(
+        mesh, topology, options.arrays, { options.scalarWeight, options.shapeWeight }))
     : options.criterion == Criterion::Quadric ? decimateBy(QuadricCriterion(topology))
                                               : decimateBy(MeanEdgeCriterion(topology, array));
   return { status, status == Status::Cancelled ? "Cancelled." : "" };

@@ -65,6 +65,11 @@ struct HashQueueDecimationOptions
   std::vector<NodalArrayView> arrays;
   double scalarWeight = 0.02; ///< >= 0; 0 = geometry only. Deviation only.
 
+  /// How much well-shaped triangles are worth: a hole whose worst new triangle is degenerate costs
+  /// this fraction of the hole's radius more than one of equilateral triangles. Its error stays
+  /// what it is. >= 0; 0 = among nearly equal errors only. Deviation only.
+  double shapeWeight = 0.0;
+
   /// Decimate by several threads (parallel_decimation.h). The result is not that of the serial
   /// algorithm, but about as good, and does not depend on the number of threads. Not with Quadric.
   bool parallel = false;

@@ -3,6 +3,7 @@
 
 #include "hash_queue_decimation.h"
 
+#include "fold_rule.h"
 #include "testing/closest_point.h"
 #include "testing/decimated.h"
 
@@ -24,6 +25,7 @@ namespace
 
 using testing::arrayOf;
 using testing::Decimated;
+using testing::expectSame;
 using testing::Mesh;
 using testing::valuesOn;
 
@@ -46,19 +48,6 @@ std::vector<Index> baseTriangles(const Decimated& decimated)
     node = decimated.result.record.nodeOrder[node];
   }
   return triangles;
-}
-
-/// What tells two results apart.
-void expectEqual(const HashQueueDecimationResult& a, const HashQueueDecimationResult& b)
-{
-  EXPECT_EQ(a.record.nodeOrder, b.record.nodeOrder);
-  EXPECT_EQ(a.record.cellOrder, b.record.cellOrder);
-  EXPECT_EQ(a.record.stepShapes, b.record.stepShapes);
-  EXPECT_EQ(a.record.patches, b.record.patches);
-  EXPECT_EQ(a.record.shapes, b.record.shapes);
-  EXPECT_EQ(a.record.stepErrors, b.record.stepErrors);
-  EXPECT_EQ(a.baseTriangles, b.baseTriangles);
-  EXPECT_EQ(a.stopReason, b.stopReason);
 }
 
 void expectUntouched(const Mesh& mesh, const Decimated& decimated)
@@ -184,7 +173,7 @@ TEST_P(EverySetting, LargeMaximumErrorsAreNoLimit)
   const Decimated decimated(mesh, options);
   options.maximumError = kInfinity;
   const Decimated infinite(mesh, options);
-  expectEqual(decimated.result, infinite.result);
+  expectSame(decimated.result, infinite.result);
   EXPECT_EQ(decimated.result.stopReason, StopReason::TargetNodes);
 }
 
@@ -243,7 +232,7 @@ TEST_P(EverySetting, TwoRunsAreTheSame)
 {
   const Decimated first(mesh, options);
   const Decimated second(mesh, options);
-  expectEqual(first.result, second.result);
+  expectSame(first.result, second.result);
 }
 
 // All coordinates are multiples of 1/256: the same in float.
@@ -260,7 +249,7 @@ TEST_P(EverySetting, FloatAndDoubleAreTheSame)
   view.pointsDouble = nullptr;
   view.pointsFloat = floats.data();
   const Decimated fromFloat(view, options);
-  expectEqual(fromDouble.result, fromFloat.result);
+  expectSame(fromDouble.result, fromFloat.result);
 }
 
 TEST_P(EverySetting, TheResultOfAnEarlierCallIsForgotten)
@@ -270,7 +259,7 @@ TEST_P(EverySetting, TheResultOfAnEarlierCallIsForgotten)
     options.criterion == Criterion::ScalarDifference ? HashQueueDecimationOptions() : options,
     &result));
   ASSERT_TRUE(outcomeOf(mesh, options, &result));
-  expectEqual(result, Decimated(mesh, options).result);
+  expectSame(result, Decimated(mesh, options).result);
   EXPECT_EQ(result.nonManifoldNodes, 0);
 }
 
@@ -340,6 +329,7 @@ TEST(HashQueueDecimation, BadOptionsAreNamed)
   for (const double bad : { -0.5, kNaN, kInfinity })
   {
     expectRefused("ScalarWeight", [&](Options& o) { o.scalarWeight = bad; });
+    expectRefused("ShapeWeight", [&](Options& o) { o.shapeWeight = bad; });
   }
   expectRefused("TargetNodes", [](Options& o) { o.targetNodes = -1; });
   expectRefused("TargetTriangles", [](Options& o) { o.targetTriangles = -1; });
@@ -771,7 +761,7 @@ TEST(NodalArrays, WeightZeroEqualsNoArrays)
   options.arrays = { arrayOf(values) };
   options.scalarWeight = 0.0;
   const Decimated weightless(mesh, options);
-  expectEqual(without.result, weightless.result);
+  expectSame(without.result, weightless.result);
 }
 
 TEST(NodalArrays, ConstantArraysChangeNothing)
@@ -782,7 +772,7 @@ TEST(NodalArrays, ConstantArraysChangeNothing)
   const Decimated without(mesh, options);
   options.arrays = { arrayOf(values) };
   const Decimated constant(mesh, options);
-  expectEqual(without.result, constant.result);
+  expectSame(without.result, constant.result);
 }
 
 TEST(NodalArrays, UnitsOfTheArrayDoNotMatter)
@@ -804,7 +794,7 @@ TEST(NodalArrays, UnitsOfTheArrayDoNotMatter)
     options.arrays = { arrayOf(scaled) };
     const Decimated other(mesh, options);
     options.arrays = { arrayOf(values) };
-    expectEqual(one.result, other.result);
+    expectSame(one.result, other.result);
   }
 }
 
@@ -1072,47 +1062,26 @@ TEST(Deviation, CubesGoToTwelveTriangles)
   }
 }
 
-/// A mesh on multiples of 1/64: moving and scaling it by powers of two is exact.
-Mesh roundedTorus()
-{
-  Mesh mesh = testing::torus(20, 14);
-  for (double& x : mesh.points)
-  {
-    x = std::round(64.0 * x) / 64.0;
-  }
-  return mesh;
-}
-
 TEST(Deviation, PlaceDoesNotMatter)
 {
-  const Mesh mesh = roundedTorus();
+  const Mesh mesh = testing::roundedTorus();
   HashQueueDecimationOptions options;
   const Decimated here(mesh, options);
   for (const double move : { 64.0, -4096.0, 1048576.0 })
   {
-    Mesh moved = mesh;
-    for (double& x : moved.points)
-    {
-      x += move;
-    }
-    const Decimated there(moved, options);
-    expectEqual(here.result, there.result);
+    const Decimated there(testing::moved(mesh, move), options);
+    expectSame(here.result, there.result);
   }
 }
 
 TEST(Deviation, SizeDoesNotMatter)
 {
-  const Mesh mesh = roundedTorus();
+  const Mesh mesh = testing::roundedTorus();
   HashQueueDecimationOptions options;
   const Decimated one(mesh, options);
   for (const int exponent : { 10, -10, 40, -30 })
   {
-    Mesh scaled = mesh;
-    for (double& x : scaled.points)
-    {
-      x = std::ldexp(x, exponent);
-    }
-    const Decimated other(scaled, options);
+    const Decimated other(testing::scaled(mesh, std::ldexp(1.0, exponent)), options);
     EXPECT_EQ(one.removed(), other.removed()) << exponent;
     EXPECT_NEAR(one.result.error, other.result.error, 1e-6 * one.result.error) << exponent;
   }
@@ -1121,17 +1090,12 @@ TEST(Deviation, SizeDoesNotMatter)
 // From atoms in metres to galaxies in centimetres.
 TEST(Deviation, ExtremeSizesWork)
 {
-  const Mesh mesh = roundedTorus();
+  const Mesh mesh = testing::roundedTorus();
   HashQueueDecimationOptions options;
   const Decimated one(mesh, options);
   for (const double factor : { 1e-12, 1e22, 1e-30, 1e30 })
   {
-    Mesh scaled = mesh;
-    for (double& x : scaled.points)
-    {
-      x *= factor;
-    }
-    const Decimated other(scaled, options);
+    const Decimated other(testing::scaled(mesh, factor), options);
     EXPECT_EQ(other.result.stopReason, StopReason::TargetReduction) << factor;
     EXPECT_NEAR(other.result.error, one.result.error, 0.3 * one.result.error) << factor;
   }
@@ -1141,6 +1105,49 @@ Vector vectorAt(const Mesh& mesh, Index node)
 {
   const auto p = mesh.point(node);
   return { p[0], p[1], p[2] };
+}
+
+/// Shapes of the triangles of level 0, worst first.
+std::vector<double> shapesOf(const Mesh& mesh, const Decimated& decimated)
+{
+  std::vector<double> shapes;
+  const std::vector<Index> triangles = baseTriangles(decimated);
+  for (std::size_t t = 0; t < triangles.size(); t += 3)
+  {
+    shapes.push_back(FilledTriangle(vectorAt(mesh, triangles[t]), vectorAt(mesh, triangles[t + 1]),
+      vectorAt(mesh, triangles[t + 2]))
+                       .shape());
+  }
+  std::sort(shapes.begin(), shapes.end());
+  return shapes;
+}
+
+// A cylinder's best triangles are long ones along its axis. The larger the weight the better are
+// the shapes, and the larger is the error that is paid, which stays a true one.
+TEST(Deviation, ShapeWeightMakesTrianglesWellShaped)
+{
+  const Mesh mesh = testing::heightField(40, 40,
+    [](double x, double /*y*/)
+    { return std::sqrt(std::max(0.0, 25.0 * 25.0 - (x - 20) * (x - 20))); });
+  HashQueueDecimationOptions options;
+  double worstBefore = 0.0;
+  double medianBefore = 0.0;
+  double errorBefore = 0.0;
+  for (const double weight : { 0.0, 0.01, 0.1 })
+  {
+    SCOPED_TRACE(weight);
+    options.shapeWeight = weight;
+    Decimated decimated(mesh, options);
+    const std::vector<double> shapes = shapesOf(mesh, decimated);
+    EXPECT_GT(shapes[shapes.size() / 20], 1.1 * worstBefore);
+    EXPECT_GT(shapes[shapes.size() / 2], 1.1 * medianBefore);
+    EXPECT_GE(decimated.result.error, errorBefore);
+    worstBefore = shapes[shapes.size() / 20];
+    medianBefore = shapes[shapes.size() / 2];
+    errorBefore = decimated.result.error;
+    decimated.cursor.moveTo(decimated.steps());
+    EXPECT_TRUE(testing::isOriginal(decimated.cursor, mesh));
+  }
 }
 
 double diagonalOf(const Mesh& mesh)

@@ -61,27 +61,9 @@ double meanOverNeighbours(const std::vector<Index>& triangles, Index node, Quant
 //   |  4(4)   |        node 1: 0, 2 and 4: (2 + 8 + 2) / 3 = 4               -> 0.4
 //   |  /   \  |        node 2: 1, 3 and 4: (8 + 10 + 6) / 3 = 8              -> 0.8
 //   0(0)----1(2)       node 3: 0, 2 and 4: (0 + 10 + 4) / 3 = 14 / 3         -> 0.4667
-class FiveNodes : public ::testing::Test
+TEST(FiveNodes, ScalarDifferenceByHand)
 {
-protected:
-  FiveNodes()
-  {
-    mesh.addNode(0.0, 0.0, 0.0);
-    mesh.addNode(2.0, 0.0, 0.0);
-    mesh.addNode(2.0, 2.0, 0.0);
-    mesh.addNode(0.0, 2.0, 0.0);
-    mesh.addNode(1.0, 1.0, 1.0);
-    for (int i = 0; i < 4; ++i)
-    {
-      mesh.addTriangle(4, i, (i + 1) % 4);
-    }
-  }
-
-  Mesh mesh;
-};
-
-TEST_F(FiveNodes, ScalarDifferenceByHand)
-{
+  const Mesh mesh = testing::pyramid();
   const std::vector<float> values{ 0.0F, 2.0F, 10.0F, 0.0F, 4.0F };
   const NodalArrayView array = viewOf(values);
   TriangleTopology topology(mesh.view());
@@ -96,8 +78,9 @@ TEST_F(FiveNodes, ScalarDifferenceByHand)
 }
 
 // [K03] 1.1, first criterion: the spokes rise 1 over sqrt(2), 35.26 degrees; the sides are flat.
-TEST_F(FiveNodes, AngleToXYPlaneByHand)
+TEST(FiveNodes, AngleToXYPlaneByHand)
 {
+  const Mesh mesh = testing::pyramid();
   TriangleTopology topology(mesh.view());
   const MeanEdgeCriterion criterion(topology, nullptr);
   const double spoke = std::atan(1.0 / std::sqrt(2.0)) / std::acos(0.0);
@@ -111,8 +94,9 @@ TEST_F(FiveNodes, AngleToXYPlaneByHand)
 // The first node that goes is the one with the smallest mean difference: node 0, drawn above. Its
 // two triangles become one, and the value of the removal is its error. (Node 4 has to lie beyond
 // the line from 1 to 3, else the new triangle would be folded.)
-TEST_F(FiveNodes, DecimationRemovesTheCheapestNodeFirst)
+TEST(FiveNodes, DecimationRemovesTheCheapestNodeFirst)
 {
+  Mesh mesh = testing::pyramid();
   mesh.points[12] = 1.3;
   mesh.points[13] = 1.3;
   mesh.points[14] = 0.1;
@@ -200,8 +184,9 @@ TEST(MeanEdgeCriterion, VectorsCompareByTheNormOfTheDifference)
   EXPECT_NEAR(cost, (5.0 + 13.0) / 2.0 / 13.0, 1e-8);
 }
 
-TEST_F(FiveNodes, NonFiniteValuesAreKeptAndCountAsTheWholeRange)
+TEST(FiveNodes, NonFiniteValuesAreKeptAndCountAsTheWholeRange)
 {
+  const Mesh mesh = testing::pyramid();
   for (const float odd : { kNaN, std::numeric_limits<float>::infinity() })
   {
     const std::vector<float> values{ 0.0F, 2.0F, odd, 0.0F, 4.0F };
@@ -218,8 +203,9 @@ TEST_F(FiveNodes, NonFiniteValuesAreKeptAndCountAsTheWholeRange)
   }
 }
 
-TEST_F(FiveNodes, ConstantArraysCostNothing)
+TEST(FiveNodes, ConstantArraysCostNothing)
 {
+  const Mesh mesh = testing::pyramid();
   const std::vector<float> values(5, 3.5F);
   const NodalArrayView array = viewOf(values);
   TriangleTopology topology(mesh.view());

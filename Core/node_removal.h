@@ -176,6 +176,63 @@ private:
   std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
 };
 
+/// A node that may go, and how.
+struct Removal
+{
+  Hole hole;
+  HoleTriangulation filling;
+  double cost = 0.0;
+  double error = 0.0;
+};
+
+/// What is to become of the node that a queue has handed out.
+enum class Verdict
+{
+  Remove,
+  Requeued,   ///< has grown costlier than the next ones
+  AboveLimit, ///< has grown costlier than the limit
+  Blocked,    ///< cannot go until a neighbour goes
+  TooCostly,  ///< costs more than the maximum error
+};
+
+/// Steps 3 to 5 of [K03] 1: find the node's hole, the triangles that fill it, and their cost.
+/// @param interval from where the node comes; `limit`: the last interval that may go now
+/// @param removal out: filled for Remove; its cost is known for AboveLimit, too
+template <typename CriterionType, typename Queue>
+Verdict tryRemoval(Index node, Index interval, Index limit, double maximumError,
+  const Intervals& intervals, CriterionType& criterion, Queue& queue, Removal& removal)
+{
+  if (!criterion.retriangulate(node, removal.hole, removal.filling, removal.cost))
+  {
+    return Verdict::Blocked;
+  }
+  const auto compare = [&]
+  {
+    const Index current = intervals.of(removal.cost);
+    if (current > limit)
+    {
+      return Verdict::AboveLimit;
+    }
+    if (current > interval && current > queue.lowestInterval() && !queue.empty())
+    {
+      queue.insert(node, current);
+      return Verdict::Requeued;
+    }
+    return Verdict::Remove;
+  };
+  Verdict verdict = compare();
+  removal.error = removal.cost;
+  if constexpr (CriterionType::kLazy)
+  {
+    if (verdict == Verdict::Remove)
+    {
+      removal.error = criterion.confirm(removal.hole, removal.filling, removal.cost);
+      verdict = removal.cost == HUGE_VAL ? Verdict::Blocked : compare();
+    }
+  }
+  return verdict == Verdict::Remove && removal.error > maximumError ? Verdict::TooCostly : verdict;
+}
+
 } // namespace undecimate
 
 #endif

@@ -189,8 +189,7 @@ private:
     std::unique_ptr<Queue> queue;
     std::vector<Index> counts; // of candidates by interval, over the parts it has done
     std::vector<Index> nodes;  // to be queued
-    Hole hole;
-    HoleTriangulation filling;
+    Removal removal;
     RecordedStep step;
 
     Worker(CriterionType criterion_, const HashQueueDecimationOptions& options)
@@ -443,56 +442,27 @@ private:
       }
       Index& place = this->places_[node];
       place = kNone;
-      double cost = 0.0;
-      if (!worker.criterion.retriangulate(node, worker.hole, worker.filling, cost))
+      const Verdict verdict = tryRemoval(node, interval, limit, this->goal_.error,
+        *this->intervals_, worker.criterion, queue, worker.removal);
+      if (verdict != Verdict::Remove)
       {
-        ++raised;
+        if (verdict == Verdict::AboveLimit)
+        {
+          place = this->intervals_->of(worker.removal.cost);
+        }
+        if (verdict == Verdict::TooCostly)
+        {
+          this->tooCostly_ = true;
+        }
+        raised += verdict == Verdict::Requeued ? 0 : 1;
         continue;
       }
-      const auto mustWait = [&]
-      {
-        const Index current = this->intervals_->of(cost);
-        if (current > limit)
-        {
-          place = current;
-          ++raised;
-          return true;
-        }
-        if (current > interval && current > queue.lowestInterval() && !queue.empty())
-        {
-          queue.insert(node, current);
-          return true;
-        }
-        return false;
-      };
-      if (mustWait())
-      {
-        continue;
-      }
-      double error = cost;
-      if constexpr (CriterionType::kLazy)
-      {
-        error = worker.criterion.confirm(worker.hole, worker.filling, cost);
-        if (cost == HUGE_VAL) // cannot go now
-        {
-          ++raised;
-          continue;
-        }
-        if (mustWait())
-        {
-          continue;
-        }
-      }
-      if (error > this->goal_.error)
-      {
-        this->tooCostly_ = true;
-        ++raised;
-        continue;
-      }
-      append(worker.step.of(this->topology_, worker.hole, worker.filling, error),
-        this->intervals_->of(cost));
-      this->topology_.replace(worker.hole, worker.filling);
-      worker.criterion.removed(worker.hole, worker.filling);
+      const Hole& hole = worker.removal.hole;
+      const HoleTriangulation& filling = worker.removal.filling;
+      append(worker.step.of(this->topology_, hole, filling, worker.removal.error),
+        this->intervals_->of(worker.removal.cost));
+      this->topology_.replace(hole, filling);
+      worker.criterion.removed(hole, filling);
       place = kGone;
       this->reevaluate(parts, part, worker, interval, limit);
     }
@@ -511,9 +481,10 @@ private:
   void reevaluate(const MeshParts& parts, Index part, Worker& worker, Index interval, Index limit)
   {
     Queue& queue = *worker.queue;
-    for (int i = 0; i < worker.hole.size; ++i)
+    const Hole& hole = worker.removal.hole;
+    for (int i = 0; i < hole.size; ++i)
     {
-      const Index node = worker.hole.ring[i];
+      const Index node = hole.ring[i];
       if (this->topology_.node(node).kept)
       {
         continue;

@@ -24,23 +24,8 @@ namespace
 {
 
 using testing::Decimated;
+using testing::expectSame;
 using testing::Mesh;
-
-void expectSame(const HashQueueDecimationResult& a, const HashQueueDecimationResult& b)
-{
-  EXPECT_EQ(a.record.nodeOrder, b.record.nodeOrder);
-  EXPECT_EQ(a.record.cellOrder, b.record.cellOrder);
-  EXPECT_EQ(a.record.stepShapes, b.record.stepShapes);
-  EXPECT_EQ(a.record.stepErrors, b.record.stepErrors);
-  EXPECT_EQ(a.record.patches, b.record.patches);
-  EXPECT_EQ(a.record.shapeOffsets, b.record.shapeOffsets);
-  EXPECT_EQ(a.record.shapes, b.record.shapes);
-  EXPECT_EQ(a.record.baseSources, b.record.baseSources);
-  EXPECT_EQ(a.record.lostSources, b.record.lostSources);
-  EXPECT_EQ(a.baseTriangles, b.baseTriangles);
-  EXPECT_EQ(a.stopReason, b.stopReason);
-  EXPECT_EQ(a.error, b.error);
-}
 
 Mesh field(int n)
 {
@@ -66,14 +51,23 @@ HashQueueDecimationOptions parallelOptions(Criterion criterion, int threads = 2)
 
 class Parallel : public ::testing::TestWithParam<Criterion>
 {
+protected:
+  void start(int n, int threads = 2)
+  {
+    mesh = field(n);
+    values = valuesOf(mesh);
+    options = parallelOptions(GetParam(), threads);
+    options.arrays = { testing::arrayOf(values) };
+  }
+
+  Mesh mesh;
+  std::vector<float> values;
+  HashQueueDecimationOptions options;
 };
 
 TEST_P(Parallel, TheNumberOfThreadsDoesNotMatter)
 {
-  const Mesh mesh = field(90);
-  const std::vector<float> values = valuesOf(mesh);
-  HashQueueDecimationOptions options = parallelOptions(GetParam(), 1);
-  options.arrays = { testing::arrayOf(values) };
+  this->start(90, 1);
   options.targetReduction = 0.85;
   options.trackCellSources = true;
   const Decimated one(mesh, options);
@@ -88,10 +82,7 @@ TEST_P(Parallel, TheNumberOfThreadsDoesNotMatter)
 
 TEST_P(Parallel, StopsWhereTheSerialOneDoes)
 {
-  const Mesh mesh = field(80);
-  const std::vector<float> values = valuesOf(mesh);
-  HashQueueDecimationOptions options = parallelOptions(GetParam());
-  options.arrays = { testing::arrayOf(values) };
+  this->start(80);
   options.targetReduction = 1.0;
   options.targetNodes = 777;
   Decimated nodes(mesh, options);
@@ -115,10 +106,7 @@ TEST_P(Parallel, StopsWhereTheSerialOneDoes)
 
 TEST_P(Parallel, MaximumErrorIsKept)
 {
-  const Mesh mesh = field(80);
-  const std::vector<float> values = valuesOf(mesh);
-  HashQueueDecimationOptions options = parallelOptions(GetParam());
-  options.arrays = { testing::arrayOf(values) };
+  this->start(80);
   options.targetReduction = 1.0;
   options.maximumError = GetParam() == Criterion::AngleToXYPlane ? 8.0
     : GetParam() == Criterion::Deviation                         ? 2e-3
@@ -138,10 +126,7 @@ TEST_P(Parallel, MaximumErrorIsKept)
 
 TEST_P(Parallel, AllThatCanGoGoes)
 {
-  const Mesh mesh = field(60);
-  const std::vector<float> values = valuesOf(mesh);
-  HashQueueDecimationOptions options = parallelOptions(GetParam());
-  options.arrays = { testing::arrayOf(values) };
+  this->start(60);
   options.targetReduction = 1.0;
   Decimated parallel(mesh, options);
   EXPECT_EQ(parallel.result.stopReason, StopReason::NoRemovableNode);
@@ -152,10 +137,7 @@ TEST_P(Parallel, AllThatCanGoGoes)
 
 TEST_P(Parallel, SmallMeshesAreLeftToTheSerialAlgorithm)
 {
-  const Mesh mesh = field(40);
-  const std::vector<float> values = valuesOf(mesh);
-  HashQueueDecimationOptions options = parallelOptions(GetParam(), 3);
-  options.arrays = { testing::arrayOf(values) };
+  this->start(40, 3);
   const Decimated parallel(mesh, options);
   options.parallel = false;
   expectSame(parallel.result, Decimated(mesh, options).result);
@@ -163,10 +145,7 @@ TEST_P(Parallel, SmallMeshesAreLeftToTheSerialAlgorithm)
 
 TEST_P(Parallel, CancelIsHeard)
 {
-  const Mesh mesh = field(80);
-  const std::vector<float> values = valuesOf(mesh);
-  HashQueueDecimationOptions options = parallelOptions(GetParam(), 3);
-  options.arrays = { testing::arrayOf(values) };
+  this->start(80, 3);
   options.targetReduction = 0.99;
   for (const double when : { 0.0, 0.1, 0.5, 0.9 })
   {
@@ -192,10 +171,7 @@ TEST_P(Parallel, CancelIsHeard)
 
 TEST_P(Parallel, ProgressRisesToOne)
 {
-  const Mesh mesh = field(80);
-  const std::vector<float> values = valuesOf(mesh);
-  HashQueueDecimationOptions options = parallelOptions(GetParam());
-  options.arrays = { testing::arrayOf(values) };
+  this->start(80);
   std::vector<double> told;
   Monitor monitor(
     [&told](double fraction)
@@ -236,18 +212,7 @@ Mesh randomTorus(std::mt19937& random)
 // With a sixteenth of its triangles missing.
 Mesh randomSieve(std::mt19937& random)
 {
-  const Mesh whole = randomTorus(random);
-  Mesh mesh = whole;
-  mesh.triangles.clear();
-  for (Index t = 0; t < whole.triangleCount(); ++t)
-  {
-    if (random() % 16 != 0)
-    {
-      mesh.addTriangle(
-        whole.triangles[3 * t], whole.triangles[3 * t + 1], whole.triangles[3 * t + 2]);
-    }
-  }
-  return mesh;
+  return testing::sieve(randomTorus(random), random, 16);
 }
 
 class ParallelMeshes : public ::testing::TestWithParam<Kind>

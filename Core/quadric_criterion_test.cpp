@@ -92,16 +92,7 @@ double costOf(const QuadricCriterion& criterion, Index node)
 // from that of 0-4-3 and from the one on edge 3-0, again half of the weight: 1.
 TEST(QuadricCriterion, CostsByHand)
 {
-  Mesh mesh;
-  mesh.addNode(0.0, 0.0, 0.0);
-  mesh.addNode(2.0, 0.0, 0.0);
-  mesh.addNode(2.0, 2.0, 0.0);
-  mesh.addNode(0.0, 2.0, 0.0);
-  mesh.addNode(1.0, 1.0, 1.0);
-  for (int i = 0; i < 4; ++i)
-  {
-    mesh.addTriangle(4, i, (i + 1) % 4);
-  }
+  const Mesh mesh = testing::pyramid();
   TriangleTopology topology(mesh.view());
   const QuadricCriterion criterion(topology);
   for (Index node = 0; node < 5; ++node)
@@ -265,42 +256,21 @@ TEST(QuadricCriterion, TheFirstErrorIsTheLeastOfAll)
   }
 }
 
-/// A mesh on multiples of 1/64: moving and scaling it by powers of two is exact.
-Mesh roundedTorus()
-{
-  Mesh mesh = testing::torus(20, 14);
-  for (double& x : mesh.points)
-  {
-    x = std::round(64.0 * x) / 64.0;
-  }
-  return mesh;
-}
-
 TEST(QuadricCriterion, PlaceAndSizeDoNotMatter)
 {
-  const Mesh mesh = roundedTorus();
+  const Mesh mesh = testing::roundedTorus();
   HashQueueDecimationOptions options;
   options.criterion = Criterion::Quadric;
   const Decimated here(mesh, options);
   for (const double move : { 64.0, -4096.0, 1048576.0 })
   {
-    Mesh moved = mesh;
-    for (double& x : moved.points)
-    {
-      x += move;
-    }
-    const Decimated there(moved, options);
+    const Decimated there(testing::moved(mesh, move), options);
     EXPECT_EQ(here.removed(), there.removed());
     EXPECT_EQ(here.result.record.stepErrors, there.result.record.stepErrors);
   }
   for (const double factor : { 0x1p10, 0x1p-30, 1e-12, 1e22, 1e-30, 1e30 })
   {
-    Mesh scaled = mesh;
-    for (double& x : scaled.points)
-    {
-      x *= factor;
-    }
-    const Decimated other(scaled, options);
+    const Decimated other(testing::scaled(mesh, factor), options);
     EXPECT_EQ(other.result.stopReason, StopReason::TargetReduction) << factor;
     EXPECT_NEAR(other.result.error, here.result.error, 0.3 * here.result.error) << factor;
   }

@@ -79,17 +79,7 @@ Mesh randomSieve(std::mt19937& random)
 {
   for (;;)
   {
-    Mesh mesh = randomTorus(random);
-    Mesh holed = mesh;
-    holed.triangles.clear();
-    for (Index t = 0; t < mesh.triangleCount(); ++t)
-    {
-      if (random() % 8 != 0)
-      {
-        holed.addTriangle(
-          mesh.triangles[3 * t], mesh.triangles[3 * t + 1], mesh.triangles[3 * t + 2]);
-      }
-    }
+    const Mesh holed = testing::sieve(randomTorus(random), random, 8);
     // Holes may touch in a node; those that do are another test's.
     if (testing::hasOneFanAtEachNode(holed.triangles) || random() % 20 == 0)
     {

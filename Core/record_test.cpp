@@ -232,13 +232,7 @@ TEST(RecordSteps, AreTakenOverAndUndone)
   const Record record = builder.finish(testing::cornersOf(cells.data()), base);
   const Record same = together.finish(testing::cornersOf(cells.data()), sameBase);
   EXPECT_EQ(base, sameBase);
-  EXPECT_EQ(record.nodeOrder, same.nodeOrder);
-  EXPECT_EQ(record.cellOrder, same.cellOrder);
-  EXPECT_EQ(record.patches, same.patches);
-  EXPECT_EQ(record.shapes, same.shapes);
-  EXPECT_EQ(record.stepErrors, same.stepErrors);
-  EXPECT_EQ(record.lostSources, same.lostSources);
-  EXPECT_EQ(record.baseSources, same.baseSources);
+  testing::expectSame(record, same);
 }
 
 TEST(Record, SizeIsBounded)

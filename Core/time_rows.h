@@ -31,10 +31,8 @@ inline int lanesFor(int steps)
 class TimeRows
 {
 public:
-  static constexpr int kMaximumComponents = 9;
-
   /// Memory: 4 * components * lanesFor(steps) bytes a node.
-  /// @param components 1 to kMaximumComponents
+  /// @param components 1 to kMaximumComponents (array_range.h)
   /// @param steps 1 or more
   /// @throw std::bad_alloc
   TimeRows(Index nodeCount, int components, int steps);

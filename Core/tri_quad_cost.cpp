@@ -3,6 +3,8 @@
 
 #include "tri_quad_cost.h"
 
+#include "array_range.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -107,8 +109,8 @@ TriQuadCost::TriQuadCost(const TriQuadMeshView& mesh, TriQuadTopology& topology,
   for (std::size_t n = 0; steer && n < options.arrays.size(); ++n)
   {
     const TimeRows& rows = *options.arrays[n].rows;
-    std::array<float, TimeRows::kMaximumComponents> low;
-    std::array<float, TimeRows::kMaximumComponents> high;
+    std::array<float, kMaximumComponents> low;
+    std::array<float, kMaximumComponents> high;
     low.fill(kInfinity);
     high.fill(-kInfinity);
     for (Index node = 0; node < rows.nodeCount(); ++node)

@@ -3,6 +3,7 @@
 
 #include "tri_quad_decimation.h"
 
+#include "testing/same_record.h"
 #include "testing/tri_quad_meshes.h"
 #include "time_lanes.h"
 #include "undecimation.h"
@@ -569,18 +570,11 @@ TEST(TriQuadDecimation, RefusesWhatDoesNotFit)
 
 void expectSame(const Decimated& a, const Decimated& b)
 {
-  const Record& first = a.result.record;
-  const Record& second = b.result.record;
   EXPECT_EQ(a.result.stopReason, b.result.stopReason);
   EXPECT_EQ(a.result.error, b.result.error);
   EXPECT_EQ(a.result.stepErrors, b.result.stepErrors);
   EXPECT_EQ(a.result.baseCells, b.result.baseCells);
-  EXPECT_EQ(first.nodeOrder, second.nodeOrder);
-  EXPECT_EQ(first.cellOrder, second.cellOrder);
-  EXPECT_EQ(first.stepShapes, second.stepShapes);
-  EXPECT_EQ(first.stepErrors, second.stepErrors);
-  EXPECT_EQ(first.patches, second.patches);
-  EXPECT_EQ(first.shapes, second.shapes);
+  testing::expectSame(a.result.record, b.result.record);
 }
 
 TEST(TriQuadDecimation, ThreadsDoNotChangeTheResult)

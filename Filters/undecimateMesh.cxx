@@ -63,6 +63,48 @@ bool fits(vtkCellArray* cells, vtkIdType pointCount)
   return flagPoints(cells, flags);
 }
 
+/// Give a mesh the point and cell data of a level; false if it was cancelled.
+/// @param pointArray makes one of a coarse array and the values of the removed nodes
+/// @param cellArray makes one of the original's values and an array that describes them
+template <typename PointArray, typename CellArray>
+bool setData(vtkPolyData* coarse, vtkPolyData* mesh, const RecordFields& record, Monitor& monitor,
+  const PointArray& pointArray, const CellArray& cellArray)
+{
+  ArrayProgress progress(monitor, record);
+  if (!progress.arrayDone()) // points and cells
+  {
+    return false;
+  }
+  vtkPointData* pointData = coarse->GetPointData();
+  std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
+  for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
+  {
+    const int place = record.pointArrays[i];
+    arrays[place] = pointArray(pointData->GetAbstractArray(place), record.pointData[i]);
+    if (!progress.arrayDone())
+    {
+      return false;
+    }
+  }
+  setArrays(mesh->GetPointData(), pointData, arrays);
+
+  vtkCellData* cellData = coarse->GetCellData();
+  arrays.assign(cellData->GetNumberOfArrays(), nullptr);
+  for (std::size_t i = 0; i < record.cellArrays.size(); ++i)
+  {
+    const int place = record.cellArrays[i];
+    vtkAbstractArray* described = cellData->GetAbstractArray(place);
+    arrays[place] =
+      record.cellData[i] ? cellArray(record.cellData[i], described) : ArrayPointer(described);
+    if (!progress.arrayDone())
+    {
+      return false;
+    }
+  }
+  setArrays(mesh->GetCellData(), cellData, arrays);
+  return true;
+}
+
 } // namespace
 
 std::string UndecimatedMesh::open(vtkPolyData* coarse, PassMonitor& monitor)
@@ -198,43 +240,18 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(
   }
   mesh->SetPolys(faces.cells);
 
-  ArrayProgress progress(monitor, record);
-  if (!progress.arrayDone())
-  {
-    return nullptr;
-  }
-  vtkPointData* pointData = coarse->GetPointData();
-  std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
-  for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
-  {
-    const int place = record.pointArrays[i];
-    arrays[place] =
-      join(pointData->GetAbstractArray(place), base, record.pointData[i], back, &memory);
-    if (!progress.arrayDone())
-    {
-      return nullptr;
-    }
-  }
-  setArrays(mesh->GetPointData(), pointData, arrays);
-
-  vtkCellData* cellData = coarse->GetCellData();
-  arrays.assign(cellData->GetNumberOfArrays(), nullptr);
   const vtkIdType leading = record.header[kVertCount] + record.header[kLineCount];
-  for (std::size_t i = 0; i < record.cellArrays.size(); ++i)
-  {
-    vtkAbstractArray* described = cellData->GetAbstractArray(record.cellArrays[i]);
-    arrays[record.cellArrays[i]] = record.cellData[i]
-      ? gather(record.cellData[i], described, leading,
-          this->cursor_.sources() ? this->cursor_.sources() : record.view.cellOrder,
-          this->cursor_.cellCount(), &memory)
-      : ArrayPointer(described);
-    if (!progress.arrayDone())
+  const bool done = setData(
+    coarse, mesh, record, monitor,
+    [&](vtkAbstractArray* coarseArray, vtkAbstractArray* removed)
+    { return join(coarseArray, base, removed, back, &memory); },
+    [&](vtkAbstractArray* original, vtkAbstractArray* described)
     {
-      return nullptr;
-    }
-  }
-  setArrays(mesh->GetCellData(), cellData, arrays);
-  return mesh;
+      return gather(original, described, leading,
+        this->cursor_.sources() ? this->cursor_.sources() : record.view.cellOrder,
+        this->cursor_.cellCount(), &memory);
+    });
+  return done ? mesh : nullptr;
 }
 
 // Level 1: the input of the decimation, in its own order. Null if it was cancelled.
@@ -263,39 +280,13 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse, Moni
   }
   mesh->SetPolys(faces.cells);
 
-  ArrayProgress progress(monitor, record);
-  if (!progress.arrayDone())
-  {
-    return nullptr;
-  }
-  vtkPointData* pointData = coarse->GetPointData();
-  std::vector<ArrayPointer> arrays(pointData->GetNumberOfArrays());
-  for (std::size_t i = 0; i < record.pointArrays.size(); ++i)
-  {
-    const int place = record.pointArrays[i];
-    arrays[place] = scatter(pointData->GetAbstractArray(place), view.baseNodeCount,
-      record.pointData[i], view.stepCount, view.nodeOrder);
-    if (!progress.arrayDone())
-    {
-      return nullptr;
-    }
-  }
-  setArrays(mesh->GetPointData(), pointData, arrays);
-
-  vtkCellData* cellData = coarse->GetCellData();
-  arrays.assign(cellData->GetNumberOfArrays(), nullptr);
-  for (std::size_t i = 0; i < record.cellArrays.size(); ++i)
-  {
-    vtkAbstractArray* described = cellData->GetAbstractArray(record.cellArrays[i]);
-    arrays[record.cellArrays[i]] =
-      record.cellData[i] ? share(record.cellData[i], described) : ArrayPointer(described);
-    if (!progress.arrayDone())
-    {
-      return nullptr;
-    }
-  }
-  setArrays(mesh->GetCellData(), cellData, arrays);
-  return mesh;
+  const bool done = setData(
+    coarse, mesh, record, monitor,
+    [&](vtkAbstractArray* coarseArray, vtkAbstractArray* removed)
+    { return scatter(coarseArray, view.baseNodeCount, removed, view.stepCount, view.nodeOrder); },
+    [](vtkAbstractArray* original, vtkAbstractArray* described)
+    { return share(original, described); });
+  return done ? mesh : nullptr;
 }
 
 void UndecimatedMeshCache::startPass()

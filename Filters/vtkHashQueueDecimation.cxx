@@ -73,6 +73,7 @@ vtkHashQueueDecimation::vtkHashQueueDecimation()
   this->SetDefaults(defaults);
   this->TargetTriangles = defaults.targetTriangles;
   this->Criterion = static_cast<int>(defaults.criterion);
+  this->ShapeWeight = defaults.shapeWeight;
   this->IntervalSpacing = static_cast<int>(defaults.intervalSpacing);
   this->IntervalNodes = defaults.intervalNodes;
   this->Parallel = defaults.parallel;
@@ -189,6 +190,13 @@ bool vtkHashQueueDecimation::Decimate(
     require(view.addArray(mesh, names[i]));
   }
 
+  if (!names.empty() && (this->Criterion == ANGLE_TO_XY_PLANE || this->Criterion == QUADRIC))
+  {
+    this->WarnOnce("scalars",
+      "The arrays in Scalars do not count with this criterion, which looks at the shape only. "
+      "Choose Deviation, or clear Scalars.");
+  }
+
   HashQueueDecimationOptions options;
   options.criterion = static_cast<undecimate::Criterion>(this->Criterion);
   this->GetOptions(pieces, options);
@@ -197,6 +205,7 @@ bool vtkHashQueueDecimation::Decimate(
   const bool noLimit = this->Criterion == ANGLE_TO_XY_PLANE ? this->MaximumError == NoErrorLimit
                                                             : this->MaximumError >= NoErrorLimit;
   options.maximumError = noLimit ? std::numeric_limits<double>::infinity() : this->MaximumError;
+  options.shapeWeight = this->ShapeWeight;
   options.intervalSpacing = static_cast<undecimate::IntervalSpacing>(this->IntervalSpacing);
   options.intervalNodes = this->IntervalNodes;
   options.parallel = this->Parallel;
@@ -219,6 +228,7 @@ void vtkHashQueueDecimation::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "TargetTriangles: " << this->TargetTriangles << "\n";
   os << indent << "Criterion: " << this->Criterion << "\n";
+  os << indent << "ShapeWeight: " << this->ShapeWeight << "\n";
   os << indent << "IntervalSpacing: " << this->IntervalSpacing << "\n";
   os << indent << "IntervalNodes: " << this->IntervalNodes << "\n";
   os << indent << "Parallel: " << (this->Parallel ? "On\n" : "Off\n");

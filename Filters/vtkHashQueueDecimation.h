@@ -106,6 +106,18 @@ public:
   void SetCriterionToQuadric() { this->SetCriterion(QUADRIC); }
   ///@}
 
+  ///@{
+  /**
+   * How much well-shaped triangles are worth, with DEVIATION: a node whose hole would leave a
+   * degenerate triangle costs this fraction of the radius of its hole more than one whose hole is
+   * filled by equilateral ones, and among the triangulations of a hole the cheapest one by that sum
+   * is taken. Errors are larger then at the same number of triangles. 0 or more; about 0.01 to 0.1
+   * is useful. Default is 0: shapes count among nearly equal errors only.
+   */
+  vtkSetClampMacro(ShapeWeight, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(ShapeWeight, double);
+  ///@}
+
   enum IntervalSpacingType
   {
     LOGARITHMIC = 0,
@@ -179,6 +191,7 @@ protected:
   // The constructor gives these the defaults of the core's options.
   vtkIdType TargetTriangles;
   int Criterion;
+  double ShapeWeight;
   int IntervalSpacing;
   double IntervalNodes;
   vtkTypeBool Parallel;

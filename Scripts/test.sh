@@ -15,4 +15,4 @@ cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DUNDECIMATE_PARAVIEW=ON -DUNDECIMATE_PYTHON=ON -DUNDECIMATE_SANITIZE=OFF \
   -DUNDECIMATE_WERROR=ON -DBUILD_TESTING=ON
 cmake --build build
-exec ctest --test-dir build --output-on-failure "$@"
+exec ctest --test-dir build --output-on-failure --parallel "$(nproc)" "$@"

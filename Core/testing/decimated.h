@@ -9,6 +9,7 @@
 
 #include "hash_queue_decimation.h"
 #include "meshes.h"
+#include "same_record.h"
 #include "undecimation.h"
 
 #include <functional>
@@ -78,6 +79,14 @@ struct Decimated
     return { order.rbegin(), order.rend() - this->result.record.baseNodeCount };
   }
 };
+
+inline void expectSame(const HashQueueDecimationResult& a, const HashQueueDecimationResult& b)
+{
+  expectSame(a.record, b.record);
+  EXPECT_EQ(a.baseTriangles, b.baseTriangles);
+  EXPECT_EQ(a.stopReason, b.stopReason);
+  EXPECT_EQ(a.error, b.error);
+}
 
 } // namespace testing
 } // namespace undecimate

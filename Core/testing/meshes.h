@@ -153,6 +153,67 @@ inline Mesh torus(int around, int across, double radius = 3.0, double thickness 
   return mesh;
 }
 
+/// A torus on multiples of 1/64: moving and scaling it by powers of two is exact.
+inline Mesh roundedTorus()
+{
+  Mesh mesh = torus(20, 14);
+  for (double& x : mesh.points)
+  {
+    x = std::round(64.0 * x) / 64.0;
+  }
+  return mesh;
+}
+
+inline Mesh moved(Mesh mesh, double by)
+{
+  for (double& x : mesh.points)
+  {
+    x += by;
+  }
+  return mesh;
+}
+
+inline Mesh scaled(Mesh mesh, double factor)
+{
+  for (double& x : mesh.points)
+  {
+    x *= factor;
+  }
+  return mesh;
+}
+
+/// With about one of so many triangles missing: many boundary loops, which may touch.
+inline Mesh sieve(const Mesh& mesh, std::mt19937& random, unsigned int oneOf)
+{
+  Mesh holed = mesh;
+  holed.triangles.clear();
+  for (Index t = 0; t < mesh.triangleCount(); ++t)
+  {
+    if (random() % oneOf != 0)
+    {
+      holed.addTriangle(
+        mesh.triangles[3 * t], mesh.triangles[3 * t + 1], mesh.triangles[3 * t + 2]);
+    }
+  }
+  return holed;
+}
+
+/// A pyramid without its base: the base is 2 wide, node 4 is 1 above its middle.
+inline Mesh pyramid()
+{
+  Mesh mesh;
+  mesh.addNode(0.0, 0.0, 0.0);
+  mesh.addNode(2.0, 0.0, 0.0);
+  mesh.addNode(2.0, 2.0, 0.0);
+  mesh.addNode(0.0, 2.0, 0.0);
+  mesh.addNode(1.0, 1.0, 1.0);
+  for (int i = 0; i < 4; ++i)
+  {
+    mesh.addTriangle(4, i, (i + 1) % 4);
+  }
+  return mesh;
+}
+
 inline Mesh tetrahedron(double size = 1.0)
 {
   Mesh mesh;

@@ -986,6 +986,25 @@ TEST(Decimation, FollowsAChangingInput)
   expectRoundTrip(filter.output(), mesh);
 }
 
+TEST(Decimation, SaysThatScalarsDoNotCount)
+{
+  for (const int criterion :
+    { vtkHashQueueDecimation::ANGLE_TO_XY_PLANE, vtkHashQueueDecimation::QUADRIC })
+  {
+    Decimation filter;
+    filter->SetInputData(plainGrid());
+    filter->SetCriterion(criterion);
+    filter.output();
+    EXPECT_TRUE(filter.messages->warnings.empty()) << filter.messages->all();
+    filter->AddScalars("stress");
+    filter.output();
+    filter->SetTargetReduction(0.5);
+    filter.output();
+    ASSERT_EQ(filter.messages->warnings.size(), 1u) << filter.messages->all();
+    EXPECT_TRUE(has(filter.messages->warnings, "The arrays in Scalars do not count"));
+  }
+}
+
 TEST(Decimation, ParallelDoesNotDependOnTheThreads)
 {
   MeshOptions options;
@@ -1015,11 +1034,11 @@ TEST(Decimation, PrintsAllProperties)
   filter->AddScalars("stress");
   std::ostringstream text;
   filter->Print(text);
-  for (const char* word :
-    { "TargetReduction: 0.9", "TargetNodes: 0", "TargetTriangles: 0", "MaximumError: 1",
-      "Criterion: 0", "Scalars: stress", "ScalarWeight: 0.02", "IntervalSpacing: 0",
-      "IntervalNodes: 4", "PreserveBoundary: Off", "Parallel: Off", "NumberOfThreads: 0",
-      "Triangulate: Off", "OriginalPointIds: Off", "NumberOfInputNodes: 0", "StopReason:" })
+  for (const char* word : { "TargetReduction: 0.9", "TargetNodes: 0", "TargetTriangles: 0",
+         "MaximumError: 1", "Criterion: 0", "Scalars: stress", "ScalarWeight: 0.02",
+         "ShapeWeight: 0", "IntervalSpacing: 0", "IntervalNodes: 4", "PreserveBoundary: Off",
+         "Parallel: Off", "NumberOfThreads: 0", "Triangulate: Off", "OriginalPointIds: Off",
+         "NumberOfInputNodes: 0", "StopReason:" })
   {
     EXPECT_NE(text.str().find(word), std::string::npos) << word;
   }
@@ -1044,6 +1063,8 @@ TEST(Decimation, ClampsItsProperties)
   EXPECT_GT(filter->GetIntervalNodes(), 0.0);
   filter->SetScalarWeight(-1.0);
   EXPECT_EQ(filter->GetScalarWeight(), 0.0);
+  filter->SetShapeWeight(-1.0);
+  EXPECT_EQ(filter->GetShapeWeight(), 0.0);
 }
 
 } // namespace

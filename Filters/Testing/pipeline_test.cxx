@@ -497,6 +497,7 @@ TEST(Pipeline, TheDefaultsAreThoseOfTheCore)
   EXPECT_EQ(filter->GetTargetTriangles(), options.targetTriangles);
   EXPECT_EQ(filter->GetCriterion(), static_cast<int>(options.criterion));
   EXPECT_EQ(filter->GetScalarWeight(), options.scalarWeight);
+  EXPECT_EQ(filter->GetShapeWeight(), options.shapeWeight);
   EXPECT_EQ(filter->GetIntervalSpacing(), static_cast<int>(options.intervalSpacing));
   EXPECT_EQ(filter->GetIntervalNodes(), options.intervalNodes);
   EXPECT_EQ(filter->GetPreserveBoundary() != 0, options.preserveBoundary);

@@ -147,6 +147,7 @@ def pipeline():
         Criterion="Scalar Difference",
         Scalars=["von_mises"],
         ScalarWeight=0.3,
+        ShapeWeight=0.05,
         IntervalSpacing="Exponential",
         IntervalNodes=7.5,
         PreserveBoundary=1,

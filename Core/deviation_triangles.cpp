@@ -1,0 +1,344 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "deviation_internals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace undecimate
+{
+
+// Whether a triangle of ring nodes may be part of the new surface.
+DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
+  const Hole& hole, const Triple& t) const
+{
+  Candidate candidate;
+  const int last = hole.size - 1;
+  const FilledTriangle triangle(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
+  if (triangle.degenerate() || !this->heightField.allows(triangle))
+  {
+    return candidate;
+  }
+  // Many small turns would add up to an upside-down triangle.
+  if (std::all_of(t.begin(), t.end(),
+        [&](unsigned char i) { return triangle.opposes(this->ringNormals[i]); }))
+  {
+    return candidate;
+  }
+  bool onRing = false;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int from = t[k];
+    const int to = t[nextCorner(k)];
+    const bool ringEdge = to == from + 1 || (!hole.boundary && from == last && to == 0);
+    if (ringEdge)
+    {
+      onRing = true;
+      if (!triangle.follows(this->oldNormals[from]))
+      {
+        return candidate;
+      }
+    }
+    else if (this->forbidden[from][to])
+    {
+      return candidate;
+    }
+  }
+  candidate.valid = onRing || triangle.follows(this->normal);
+  candidate.shape = triangle.shape();
+  candidate.normal = triangle.normal();
+  return candidate;
+}
+
+// All triangles of a small hole, and the edges that they would add.
+void DeviationCriterion::Internals::judgeAll(const Hole& hole)
+{
+  for (int j = 1; j < hole.size; ++j)
+  {
+    for (int i = 0; i < j; ++i)
+    {
+      this->crossings[pairNumber(i, j)] = this->isRingEdge(hole, i, j)
+        ? 0.0F
+        : static_cast<float>(this->crossingSquares(hole, i, j).largest());
+    }
+  }
+  int number = 0;
+  for (int k = 2; k < hole.size; ++k)
+  {
+    for (int j = 1; j < k; ++j)
+    {
+      for (int i = 0; i < j; ++i)
+      {
+        this->candidates[number++] = this->judge(hole,
+          { static_cast<unsigned char>(i), static_cast<unsigned char>(j),
+            static_cast<unsigned char>(k) });
+      }
+    }
+  }
+  for (const int triple : this->refused)
+  {
+    this->candidates[triple].valid = false;
+  }
+}
+
+// Largest squared height of the samples over each candidate triangle in which they lie, as seen
+// along the hole's normal. Every triangulation shares the samples out among its triangles in this
+// way, so that its cost is that of its worst triangle. A sample outside the hole counts for the
+// triangle on the ring edge that it lies behind.
+void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
+{
+  const Vector axis =
+    std::abs(this->normal.x) < 0.6 ? Vector{ 1.0, 0.0, 0.0 } : Vector{ 0.0, 1.0, 0.0 };
+  Vector u = cross(axis, this->normal);
+  u = (1.0 / std::sqrt(dot(u, u))) * u;
+  this->axisX = u;
+  this->axisY = cross(this->normal, u);
+  for (int i = 0; i < hole.size; ++i)
+  {
+    this->flat[i] = { static_cast<float>(dot(this->ring[i], this->axisX)),
+      static_cast<float>(dot(this->ring[i], this->axisY)) };
+  }
+  grow(this->sides, std::size_t{ 1 } * kChunk * pairNumber(0, hole.size));
+  static const std::array<float, kChunk> kInside{}; // on the line: inside on either side
+  const auto isOutline = [last = hole.size - 1](int i, int j)
+  { return j == i + 1 || (i == 0 && j == last); };
+  for (int first = 0; first < this->sampleRows.size; first += kChunk)
+  {
+    const int count = std::min(kChunk, this->sampleRows.size - first);
+    const PointRows chunk{ this->sampleRows.x + first, this->sampleRows.y + first,
+      this->sampleRows.z + first, count };
+    project(chunk, this->axisX, this->axisY, this->flatX.data(), this->flatY.data());
+    for (int j = 1; j < hole.size; ++j)
+    {
+      for (int i = 0; i < j; ++i)
+      {
+        float* row = this->sides.data() + std::size_t{ 1 } * kChunk * pairNumber(i, j);
+        if (!isOutline(i, j))
+        {
+          const float dx = this->flat[j].x - this->flat[i].x;
+          const float dy = this->flat[j].y - this->flat[i].y;
+          sidesOfLine(this->flatX.data(), this->flatY.data(), count, dx, dy,
+            dx * this->flat[i].y - dy * this->flat[i].x, row);
+        }
+      }
+    }
+    int number = 0;
+    for (int k = 2; k < hole.size; ++k)
+    {
+      for (int j = 1; j < k; ++j)
+      {
+        for (int i = 0; i < j; ++i, ++number)
+        {
+          Candidate& candidate = this->candidates[number];
+          if (!candidate.valid)
+          {
+            continue;
+          }
+          const auto side = [&](int from, int to) -> const float*
+          {
+            return isOutline(from, to)
+              ? kInside.data()
+              : this->sides.data() + std::size_t{ 1 } * kChunk * pairNumber(from, to);
+          };
+          const Triple t{ static_cast<unsigned char>(i), static_cast<unsigned char>(j),
+            static_cast<unsigned char>(k) };
+          const float* extra = this->useArrays ? this->chunkErrors(hole, t, first, count) : nullptr;
+          const float square = largestSquaredHeight(chunk, candidate.normal,
+            dot(candidate.normal, this->ring[i]), { side(i, j), side(j, k), side(i, k) }, extra);
+          candidate.square = std::max(candidate.square, square);
+        }
+      }
+    }
+  }
+}
+
+// Squared errors of the arrays over a candidate triangle: each component is a linear function of
+// the place in the plane.
+const float* DeviationCriterion::Internals::chunkErrors(
+  const Hole& hole, const Triple& t, int first, int count)
+{
+  float* __restrict__ largest = this->chunkValues.data();
+  float* __restrict__ sum = largest + kChunk;
+  const float* __restrict__ x = this->flatX.data();
+  const float* __restrict__ y = this->flatY.data();
+  std::fill_n(largest, count, 0.0F);
+  const Point& a = this->flat[t[0]];
+  const float bx = this->flat[t[1]].x - a.x;
+  const float by = this->flat[t[1]].y - a.y;
+  const float cx = this->flat[t[2]].x - a.x;
+  const float cy = this->flat[t[2]].y - a.y;
+  const float determinant = bx * cy - by * cx;
+  if (!(determinant > 0.0F))
+  {
+    return largest;
+  }
+  const float* __restrict__ value = this->values.data() + first;
+  for (std::size_t n = 0; n < this->arrays.size(); ++n)
+  {
+    const NodalArrayView& array = this->arrays[n];
+    std::fill_n(sum, count, 0.0F);
+    for (int component = 0; component < array.components;
+         ++component, value += this->sampleRows.size)
+    {
+      const auto valueAt = [&](int corner)
+      { return this->value(n, component, hole.ring[t[corner]]); };
+      const float f = valueAt(0);
+      const float fb = valueAt(1) - f;
+      const float fc = valueAt(2) - f;
+      const float gx = (fb * cy - fc * by) / determinant;
+      const float gy = (fc * bx - fb * cx) / determinant;
+      const float f0 = f - gx * a.x - gy * a.y;
+      for (int s = 0; s < count; ++s)
+      {
+        const float difference = f0 + gx * x[s] + gy * y[s] - value[s];
+        sum[s] += difference * difference;
+      }
+    }
+    for (int s = 0; s < count; ++s)
+    {
+      largest[s] = largest[s] > sum[s] ? largest[s] : sum[s];
+    }
+  }
+  return largest;
+}
+
+// The triangulation with the smallest sum of the fourth powers of its triangles' costs (their
+// squares squared): nearly the one whose worst triangle is best, and the others are good too.
+// Dynamic programming over the parts of the polygon behind each pair of nodes (G. T. Klincsek:
+// Minimal triangulations of polygonal domains, Annals of Discrete Mathematics 9 (1980)).
+bool DeviationCriterion::Internals::chooseTriangulation(
+  const Hole& hole, HoleTriangulation& filling) const
+{
+  std::array<double, kMaximumPairs> sums;
+  std::array<unsigned char, kMaximumPairs> apexes;
+  const double scale = 1.0 / (this->radius * this->radius);
+  for (int span = 1; span < hole.size; ++span)
+  {
+    for (int i = 0; i + span < hole.size; ++i)
+    {
+      const int k = i + span;
+      const int here = pairNumber(i, k);
+      sums[here] = span == 1 ? 0.0 : HUGE_VAL;
+      for (int j = i + 1; j < k; ++j)
+      {
+        const Candidate& candidate = this->candidates[tripleNumber(i, j, k)];
+        const int before = pairNumber(i, j);
+        const int behind = pairNumber(j, k);
+        if (!candidate.valid)
+        {
+          continue;
+        }
+        const double distance = std::max({ candidate.square, this->crossings[before],
+          this->crossings[behind], this->crossings[here] });
+        const double shape = this->shapeTerm(candidate.shape);
+        const double square = scale * (distance + shape * shape);
+        const double sum = sums[before] + sums[behind] + square * square;
+        if (sum < sums[here])
+        {
+          sums[here] = sum;
+          apexes[here] = static_cast<unsigned char>(j);
+        }
+      }
+    }
+  }
+  if (!(sums[pairNumber(0, hole.size - 1)] < HUGE_VAL))
+  {
+    return false;
+  }
+  filling.count = 0;
+  std::array<std::array<unsigned char, 2>, kMaximumCompared> parts;
+  int left = 0;
+  parts[left++] = { 0, static_cast<unsigned char>(hole.size - 1) };
+  while (left > 0)
+  {
+    const auto [i, k] = parts[--left];
+    const unsigned char j = apexes[pairNumber(i, k)];
+    filling.triangles[filling.count++] = { i, j, k };
+    if (j > i + 1)
+    {
+      parts[left++] = { i, j };
+    }
+    if (k > j + 1)
+    {
+      parts[left++] = { j, k };
+    }
+  }
+  // Parts before wholes: each triangle is an ear then.
+  std::reverse(filling.triangles.begin(), filling.triangles.begin() + filling.count);
+  return true;
+}
+
+// Whether a triangle of the best filling would lie on a neighbour where the old one did not.
+bool DeviationCriterion::Internals::liesOn(const Hole& hole, int triangle) const
+{
+  const auto place = [&](Index node) { return this->topology.node(node).position; };
+  const auto isFolded = [](const Vector& a, const Vector& b)
+  {
+    const double product = dot(a, b);
+    return product < 0.0 && product * product > kFolded * kFolded * dot(a, a) * dot(b, b);
+  };
+  const auto normalOf = [&](const Triple& t)
+  {
+    const Vector& a = this->ring[t[0]];
+    return cross(this->ring[t[1]] - a, this->ring[t[2]] - a);
+  };
+  const HoleTriangulation& filling = this->best.filling;
+  const Triple& t = filling.triangles[triangle];
+  const Vector normal = normalOf(t);
+  for (int c = 0; c < 3; ++c)
+  {
+    const int from = t[c];
+    const int to = t[nextCorner(c)];
+    const bool last = from + 1 == hole.size;
+    if (to == (last ? 0 : from + 1) && !(last && hole.boundary))
+    {
+      if (hole.outer[from] == kNoCorner)
+      {
+        continue;
+      }
+      const auto& nodes = this->topology.triangle(triangleOf(hole.outer[from])).nodes;
+      const Vector a = place(nodes[0]);
+      const Vector outer = cross(place(nodes[1]) - a, place(nodes[2]) - a);
+      if (isFolded(normal, outer) && !isFolded(this->oldNormals[from], outer))
+      {
+        return true;
+      }
+      continue;
+    }
+    for (int other = 0; other < triangle; ++other)
+    {
+      const Triple& u = filling.triangles[other];
+      const bool shared = std::find(u.begin(), u.end(), from) != u.end() &&
+        std::find(u.begin(), u.end(), to) != u.end();
+      if (shared && isFolded(normal, normalOf(u)))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Refuse the triangles of the best filling of a small hole that would lie on a neighbour; true if
+// there were any.
+bool DeviationCriterion::Internals::refuseFolded(const Hole& hole)
+{
+  bool any = false;
+  for (int t = 0; t < this->best.filling.count; ++t)
+  {
+    if (this->liesOn(hole, t))
+    {
+      any = true;
+      if (hole.size <= kMaximumCompared)
+      {
+        Triple sorted = this->best.filling.triangles[t];
+        std::sort(sorted.begin(), sorted.end());
+        this->refused.push_back(tripleNumber(sorted[0], sorted[1], sorted[2]));
+      }
+    }
+  }
+  return any;
+}
+
+} // namespace undecimate
