@@ -22,8 +22,9 @@
 
 /// A function with loops that profit from wide vectors: one binary runs everywhere, and uses wider
 /// ones where there are some. Fused multiply-add stays off, so that results do not depend on the
-/// machine.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__)
+/// machine. (What chooses between them runs before the thread sanitizer is ready.)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && \
+  !defined(__SANITIZE_THREAD__)
 #define UNDECIMATE_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define UNDECIMATE_VECTOR_CLONES

@@ -49,8 +49,10 @@ namespace undecimate
 class DeviationCriterion
 {
 public:
-  /// Neighbours of a removed node are evaluated when their turn comes.
+  /// Neighbours of a removed node are evaluated when their turn comes,
   static constexpr bool kLazy = true;
+  /// unless few triangles are left: then each removal counts, and they are evaluated at once.
+  bool isLazy() const;
 
   /// As in HashQueueDecimationOptions.
   struct Weights

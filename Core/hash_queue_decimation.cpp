@@ -219,7 +219,7 @@ private:
           continue;
         }
       }
-      if (CriterionType::kLazy)
+      if (this->criterion_.isLazy())
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
         queue.insert(node, queue.contains(node) ? queue.interval(node) : interval);

@@ -27,6 +27,7 @@ class MeanEdgeCriterion
 public:
   /// Costs are always up to date: neighbours of a removed node are re-evaluated at once.
   static constexpr bool kLazy = false;
+  static constexpr bool isLazy() { return false; }
 
   /// Scalar Difference by an array, or Angle to XY Plane without one. Nodes where the array is NaN
   /// or infinite are kept from now on; a difference to such a node counts as the whole range.

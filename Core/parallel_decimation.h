@@ -491,7 +491,7 @@ private:
       }
       const bool queued = queue.contains(node);
       Index place = this->places_[node];
-      if constexpr (CriterionType::kLazy)
+      if (worker.criterion.isLazy())
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
         place = queued ? queue.interval(node) : place == kNone ? interval : place;

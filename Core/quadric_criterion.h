@@ -74,6 +74,7 @@ class QuadricCriterion
 public:
   /// Neighbours of a removed node are evaluated when their turn comes.
   static constexpr bool kLazy = true;
+  static constexpr bool isLazy() { return true; }
 
   /// @param topology with the positions of the nodes; their values and sums are ours from now on
   explicit QuadricCriterion(TriangleTopology& topology);

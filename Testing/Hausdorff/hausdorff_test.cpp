@@ -45,8 +45,10 @@ namespace PMP = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// What the record claims may be larger than what is measured by this factor (measured: 1.06).
+/// What the record claims may be larger than what is measured by this factor (measured: 1.15), and
+/// smaller by this one (measured: 1.09).
 constexpr double kClaimTooLarge = 1.2;
+constexpr double kClaimTooSmall = 1.1;
 /// Distances below this fraction of the diagonal are rounding.
 constexpr double kRounding = 1e-6;
 
@@ -61,21 +63,18 @@ struct Case
   const char* name;
   bool isDevelopmentData;          ///< absent from a copy of the repository alone
   double errorBound;               ///< smallest one that CGAL is asked for
-  double claimTooSmall;            ///< what is measured over what the record claims
   std::array<double, 4> distances; ///< at 50, 25, 10 and 5 % of the triangles
 };
 
 // clang-format off
 constexpr Case kCases[] = {
-  // The claim is of samples. On rough and strongly curved surfaces the largest distance lies between
-  // them as long as there are few: measured 1.58, 1.69, 1.21 and 1.37 of what is claimed.
-  { "plate_hole",   false, 2e-3, 1.1,  { 1e-6,   1e-6,   1e-6,   1e-6 } },
-  { "flange",       false, 2e-3, 1.1,  { 1e-6,   1e-6,   8.1e-4, 2.4e-3 } },
-  { "scan",         false, 5e-4, 1.45, { 1.65e-3, 2.7e-3, 6.3e-3, 1.08e-2 } },
-  { "blade_tip",    false, 5e-4, 1.75, { 2.3e-4, 4.4e-4, 1.1e-3, 1.7e-3 } },
-  { "grid",         false, 5e-4, 1.9,  { 6.8e-4, 1.8e-3, 2.8e-3, 4.4e-3 } },
-  { "anchor_dense", true,  1e-3, 1.35, { 1e-6,   4.9e-4, 1.7e-3, 4.1e-3 } },
-  { "rocker_arm",   true,  1e-3, 1.55, { 6.9e-4, 1.2e-3, 2.1e-3, 4.1e-3 } },
+  { "plate_hole",   false, 2e-3, { 1e-6, 1e-6, 1e-6, 1e-6 } },
+  { "flange",       false, 2e-3, { 1e-6, 1e-6, 8.1e-4, 2.2e-3 } },
+  { "scan",         false, 5e-4, { 1.3e-3, 2.3e-3, 4.9e-3, 9.5e-3 } },
+  { "blade_tip",    false, 5e-4, { 1.7e-4, 4.2e-4, 1.1e-3, 1.8e-3 } },
+  { "grid",         false, 5e-4, { 5.5e-4, 1.3e-3, 2.2e-3, 4.5e-3 } },
+  { "anchor_dense", true,  1e-3, { 1e-6, 4.6e-4, 1.4e-3, 4.1e-3 } },
+  { "rocker_arm",   true,  1e-3, { 5.6e-4, 9.7e-4, 2e-3, 4e-3 } },
 };
 // clang-format on
 
@@ -286,6 +285,33 @@ Topology topologyOf(const std::vector<Index>& triangles)
   return t;
 }
 
+void expectManifoldLike(const Topology& input, const Topology& level)
+{
+  EXPECT_EQ(level.crowded, 0);
+  EXPECT_EQ(level.misoriented, 0);
+  EXPECT_EQ(level.degenerate, 0);
+  EXPECT_EQ(level.repeated, 0);
+  EXPECT_EQ(level.euler(), input.euler());
+}
+
+/// Move to the first level from below with at most this percentage of the input's triangles.
+void moveToPercent(Decimated& d, int percent)
+{
+  const Index wanted =
+    static_cast<Index>(std::llround(0.01 * percent * static_cast<double>(d.mesh.triangleCount())));
+  d.cursor.moveTo(stepsForTriangles(d.cursor, wanted));
+  ASSERT_LE(d.cursor.cellCount(), wanted);
+  ASSERT_GT(d.cursor.cellCount(), wanted - 3);
+}
+
+/// Two-sided distance of samples.
+double sampledDistance(const Surface& a, const Surface& b)
+{
+  const auto sampling = CGAL::parameters::number_of_points_on_faces(kSamples).random_seed(1);
+  return PMP::approximate_symmetric_Hausdorff_distance<CGAL::Sequential_tag>(
+    a, b, sampling, sampling);
+}
+
 class HausdorffTest : public ::testing::TestWithParam<Case>
 {
 };
@@ -297,28 +323,22 @@ TEST_P(HausdorffTest, ClaimedErrorIsTheMeasuredOne)
   ASSERT_FALSE(HasFatalFailure());
   CGAL::get_default_random() = CGAL::Random(1); // some of the sampling ignores random_seed()
   const Surface original = surface(d.mesh, d.mesh.triangles);
-  const double tooSmall = GetParam().claimTooSmall;
   for (std::size_t i = 0; i < kPercent.size(); ++i)
   {
-    const Index wanted = static_cast<Index>(
-      std::llround(0.01 * kPercent[i] * static_cast<double>(d.mesh.triangleCount())));
-    d.cursor.moveTo(stepsForTriangles(d.cursor, wanted));
-    ASSERT_LE(d.cursor.cellCount(), wanted);
-    ASSERT_GT(d.cursor.cellCount(), wanted - 3);
+    moveToPercent(d, kPercent[i]);
+    ASSERT_FALSE(HasFatalFailure());
     const double claim = d.cursor.error();
     const double slack = std::max(GetParam().errorBound, 0.5 * claim);
     const Surface level = surface(d.mesh, currentTriangles(d.cursor));
     const double bounded =
       PMP::bounded_error_symmetric_Hausdorff_distance<CGAL::Sequential_tag>(original, level, slack);
-    const auto sampling = CGAL::parameters::number_of_points_on_faces(kSamples).random_seed(1);
-    const double sampled = PMP::approximate_symmetric_Hausdorff_distance<CGAL::Sequential_tag>(
-      original, level, sampling, sampling);
+    const double sampled = sampledDistance(original, level);
     std::cout << d.mesh.name << " " << kPercent[i] << " %: claimed " << claim << ", bounded "
               << bounded << " +- " << slack << ", sampled " << sampled << ", bound "
               << GetParam().distances[i] << std::endl;
     EXPECT_LE(sampled, bounded + slack + kRounding) << "CGAL contradicts itself";
-    EXPECT_GE(tooSmall * claim + slack + kRounding, bounded) << "claims too little";
-    EXPECT_GE(tooSmall * claim + kRounding, sampled) << "claims too little";
+    EXPECT_GE(kClaimTooSmall * claim + slack + kRounding, bounded) << "claims too little";
+    EXPECT_GE(kClaimTooSmall * claim + kRounding, sampled) << "claims too little";
     EXPECT_LE(claim, kClaimTooLarge * bounded + slack + kRounding) << "claims too much";
     EXPECT_LE(claim, kClaimTooLarge * sampled + kRounding) << "claims too much";
     EXPECT_LE(std::max(sampled, bounded - slack), GetParam().distances[i])
@@ -336,13 +356,10 @@ TEST_P(HausdorffTest, EveryLevelIsAManifoldOfTheInputsTopology)
   for (int i = 0; i <= 40; ++i)
   {
     d.cursor.moveTo(d.cursor.stepsForLevel(i / 40.0));
+    SCOPED_TRACE(std::to_string(i) + "/40");
     const Topology t = topologyOf(currentTriangles(d.cursor));
-    EXPECT_EQ(t.crowded, 0) << i << "/40";
-    EXPECT_EQ(t.misoriented, 0) << i << "/40";
-    EXPECT_EQ(t.degenerate, 0) << i << "/40";
-    EXPECT_EQ(t.repeated, 0) << i << "/40";
-    EXPECT_EQ(t.euler(), input.euler()) << i << "/40";
-    EXPECT_EQ(t.nodes, d.cursor.nodeCount()) << i << "/40: a node without a triangle";
+    expectManifoldLike(input, t);
+    EXPECT_EQ(t.nodes, d.cursor.nodeCount()) << "a node without a triangle";
   }
 }
 
@@ -441,7 +458,6 @@ double valueError(const Decimated& d)
 // A nodal array steers: its error at the nodes is claimed as well, times the weight.
 TEST(PlateWithStressTest, ClaimedErrorIsTheStressErrorToo)
 {
-  constexpr double kClaimTooSmall = 1.1;                                    // measured: 1.00
   constexpr std::array<double, 4> kBounds = { 4e-4, 1.2e-3, 4e-3, 7.8e-3 }; // of the range
   Decimated d;
   d.mesh = readMesh("plate_hole", dataFile("plate_hole.vtp"), "von_mises");
@@ -484,8 +500,9 @@ int flippedTriangles(const TestMesh& mesh, const std::vector<Index>& triangles)
 // A height field must not fold, whatever the criterion.
 TEST(GridTest, NoTriangleIsFlippedAtAnyLevel)
 {
-  for (const undecimate::Criterion criterion : { undecimate::Criterion::Deviation,
-         undecimate::Criterion::ScalarDifference, undecimate::Criterion::AngleToXYPlane })
+  for (const undecimate::Criterion criterion :
+    { undecimate::Criterion::Deviation, undecimate::Criterion::ScalarDifference,
+      undecimate::Criterion::AngleToXYPlane, undecimate::Criterion::Quadric })
   {
     Decimated d;
     d.mesh = makeGrid(70);
@@ -508,6 +525,47 @@ TEST(GridTest, NoTriangleIsFlippedAtAnyLevel)
     }
     EXPECT_EQ(flipped, 0) << "at most, on " << levels << " of 101 levels; criterion "
                           << static_cast<int>(criterion);
+  }
+}
+
+// Quadric claims the root of a mean square, which is no bound: the distance was 1.6 to 6.9 times
+// the claim when this was set.
+TEST(QuadricTest, DistancesAreWithinTheirBounds)
+{
+  struct Bounds
+  {
+    const char* name;
+    std::array<double, 4> distances; // at kPercent
+  };
+  // Measured, and a tenth more.
+  for (const Bounds& bounds : { Bounds{ "flange", { 1e-6, 1e-6, 4.3e-3, 6.7e-3 } },
+         Bounds{ "scan", { 2.4e-3, 5.2e-3, 9.8e-3, 1.8e-2 } },
+         Bounds{ "blade_tip", { 4.1e-4, 1.2e-3, 3.8e-3, 3.8e-3 } },
+         Bounds{ "grid", { 1.2e-3, 2.5e-3, 7.7e-3, 9.9e-3 } } })
+  {
+    Decimated d;
+    d.mesh = meshOf(bounds.name);
+    undecimate::HashQueueDecimationOptions options;
+    options.criterion = undecimate::Criterion::Quadric;
+    decimate(d, options);
+    ASSERT_FALSE(HasFatalFailure());
+    CGAL::get_default_random() = CGAL::Random(1);
+    const Surface original = surface(d.mesh, d.mesh.triangles);
+    const Topology input = topologyOf(d.mesh.triangles);
+    for (std::size_t i = 0; i < kPercent.size(); ++i)
+    {
+      SCOPED_TRACE(std::string(bounds.name) + " " + std::to_string(kPercent[i]) + " %");
+      moveToPercent(d, kPercent[i]);
+      ASSERT_FALSE(HasFatalFailure());
+      const std::vector<Index> triangles = currentTriangles(d.cursor);
+      const double sampled = sampledDistance(original, surface(d.mesh, triangles));
+      std::cout << bounds.name << " " << kPercent[i] << " %: claimed " << d.cursor.error()
+                << ", sampled " << sampled << ", bound " << bounds.distances[i] << std::endl;
+      EXPECT_LE(sampled, bounds.distances[i]) << "less accurate than it was";
+      EXPECT_GE(sampled, 0.5 * d.cursor.error()) << "claims more than there is";
+      EXPECT_LE(sampled, 8.0 * d.cursor.error() + kRounding) << "claims far too little";
+      expectManifoldLike(input, topologyOf(triangles));
+    }
   }
 }
 
