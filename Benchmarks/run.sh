@@ -25,14 +25,25 @@ cache="${XDG_CACHE_HOME:-$HOME/.cache}/undecimate"
 part=${1:-all}
 [ $# -gt 0 ] && shift
 
+# Configure and build; anew if the folder was another copy's.
+compile() { # sources, build folder, options
+  sources=$1
+  folder=$2
+  shift 2
+  if ! grep -qsFx "CMAKE_HOME_DIRECTORY:INTERNAL=$sources" "$folder/CMakeCache.txt"; then
+    rm -rf "$folder"
+  fi
+  cmake -S "$sources" -B "$folder" "$@" > "$folder.log" 2>&1 && cmake --build "$folder" -j 2 >> "$folder.log" 2>&1 || {
+    cat "$folder.log" >&2
+    exit 1
+  }
+}
+
 # The drivers that measure the core; the page and the tests need none.
 build="$cache/benchmarks-build"
 if [ "$part" != page ] && [ "$part" != test ]; then
-  cmake -S "$here" -B "$build" -DCMAKE_BUILD_TYPE=Release > /dev/null
-  cmake --build "$build" -j 2 > "$cache/benchmarks-build.log" 2>&1 || {
-    cat "$cache/benchmarks-build.log" >&2
-    exit 1
-  }
+  mkdir -p "$cache"
+  compile "$here" "$build" -DCMAKE_BUILD_TYPE=Release
 fi
 
 # A Python environment; made anew when the pins change.
@@ -61,11 +72,8 @@ rivals() {
         cargo add --quiet meshopt@=0.7.0 && cargo vendor --quiet vendor > /dev/null)
     fi
   fi
-  cmake -S "$here/field_drivers" -B "$cache/rivals-build" -DMESHOPTIMIZER_SOURCE="$source" | grep Without || true
-  cmake --build "$cache/rivals-build" -j 2 > "$cache/rivals-build.log" 2>&1 || {
-    cat "$cache/rivals-build.log" >&2
-    exit 1
-  }
+  compile "$here/field_drivers" "$cache/rivals-build" -DMESHOPTIMIZER_SOURCE="$source"
+  grep Without "$cache/rivals-build.log" >&2 || true
 }
 
 run() {

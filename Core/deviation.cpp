@@ -18,9 +18,9 @@ namespace
 // interpolation where error times area is the same all over, and on the root mean square where
 // error times the root of the area is. So the cost is the deviation times this power of the area of
 // the hole (in mean holes): as much as the mean gains without a price in the largest deviation; and
-// the errors of arrays, of which the mean counts as much as the largest, times that power.
+// the errors of arrays, of which the mean counts as much as the largest, times their area.
 constexpr double kDistancePower = 1.0 / 16.0;
-constexpr double kArrayPower = 1.0 / 2.0;
+constexpr double kArrayPower = 1.0;
 constexpr double kMeanHole = 6.0; // triangles
 
 // From here on costs are kept up to date: 2 % off the errors of the last levels (means of 44

@@ -28,7 +28,7 @@
 /// lie on a neighbour.
 ///
 /// Cost and error are two things: the queue goes by the error times the 16th root of the hole's
-/// area, that of arrays times its square root, for the sake of the mean error (deviation.md); a
+/// area, that of arrays times the area itself, for the sake of the mean error (deviation.md); a
 /// shape weight makes holes that leave bad triangles wait.
 ///
 /// Samples are relative to the removed node and in single precision; orientation is decided in

@@ -63,7 +63,7 @@ struct HashQueueDecimationOptions
   /// number: an error of the fraction f of an array's range counts as the deviation scalarWeight *
   /// f.
   std::vector<NodalArrayView> arrays;
-  double scalarWeight = 0.02; ///< >= 0; 0 = geometry only. Deviation only.
+  double scalarWeight = 0.055; ///< >= 0; 0 = geometry only. Deviation only.
 
   /// How much well-shaped triangles are worth: a hole whose worst new triangle is degenerate costs
   /// this fraction of the hole's radius more than one of equilateral triangles. Its error stays

@@ -113,7 +113,7 @@ public:
   /**
    * With the criterion Deviation an error of an array in Scalars, as a fraction of the array's
    * range (over all time steps that count), counts as the deviation of this weight times the
-   * fraction. 0 is geometry only; at least 0. Default is 0.02 (vtkHashQueueDecimation) or 0.1
+   * fraction. 0 is geometry only; at least 0. Default is 0.055 (vtkHashQueueDecimation) or 0.1
    * (vtkTriQuadDecimation).
    */
   vtkSetClampMacro(ScalarWeight, double, 0.0, VTK_DOUBLE_MAX);
