@@ -1150,23 +1150,6 @@ TEST(Deviation, ShapeWeightMakesTrianglesWellShaped)
   }
 }
 
-double diagonalOf(const Mesh& mesh)
-{
-  double square = 0.0;
-  for (int c = 0; c < 3; ++c)
-  {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-    for (Index i = 0; i < mesh.nodeCount(); ++i)
-    {
-      low = std::min(low, mesh.point(i)[c]);
-      high = std::max(high, mesh.point(i)[c]);
-    }
-    square += (high - low) * (high - low);
-  }
-  return std::sqrt(square);
-}
-
 // The error that is claimed bounds the distance of every removed node to the coarse surface: found
 // by brute force. A removed node is measured to the triangles of its patch, so the claim may only
 // be too large.
@@ -1181,7 +1164,7 @@ TEST(Deviation, ErrorsBoundTheDistanceOfRemovedNodes)
     {
       options.targetReduction = reduction;
       const Decimated decimated(mesh, options);
-      const double diagonal = diagonalOf(mesh);
+      const double diagonal = testing::diagonalOf(mesh);
       const std::vector<Index> triangles = baseTriangles(decimated);
       double largest = 0.0;
       for (const Index node : decimated.removed())

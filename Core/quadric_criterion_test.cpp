@@ -205,20 +205,7 @@ TEST(QuadricCriterion, TheFirstErrorIsTheLeastOfAll)
       const auto p = mesh.point(node);
       return Vector{ p[0], p[1], p[2] };
     };
-    double extent[3] = {};
-    for (int c = 0; c < 3; ++c)
-    {
-      double low = HUGE_VAL;
-      double high = -HUGE_VAL;
-      for (Index i = 0; i < mesh.nodeCount(); ++i)
-      {
-        low = std::min(low, mesh.point(i)[c]);
-        high = std::max(high, mesh.point(i)[c]);
-      }
-      extent[c] = high - low;
-    }
-    const double size =
-      std::sqrt(extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]);
+    const double size = testing::diagonalOf(mesh);
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3)
     {
       const Index* nodes = mesh.triangles.data() + t;

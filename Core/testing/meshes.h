@@ -153,6 +153,24 @@ inline Mesh torus(int around, int across, double radius = 3.0, double thickness 
   return mesh;
 }
 
+/// Of the bounding box.
+inline double diagonalOf(const Mesh& mesh)
+{
+  double square = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    double low = HUGE_VAL;
+    double high = -HUGE_VAL;
+    for (Index i = 0; i < mesh.nodeCount(); ++i)
+    {
+      low = std::min(low, mesh.point(i)[c]);
+      high = std::max(high, mesh.point(i)[c]);
+    }
+    square += (high - low) * (high - low);
+  }
+  return std::sqrt(square);
+}
+
 /// A torus on multiples of 1/64: moving and scaling it by powers of two is exact.
 inline Mesh roundedTorus()
 {
