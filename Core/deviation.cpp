@@ -33,10 +33,10 @@ constexpr double kMargin = 1.05;
 
 } // namespace
 
-DeviationCriterion::DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
-  const std::vector<NodalArrayView>& arrays, const Weights& weights)
+DeviationCriterion::DeviationCriterion(
+  TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, const Weights& weights)
 {
-  const auto shared = std::make_shared<Shared>(mesh, topology, arrays);
+  const auto shared = std::make_shared<Shared>(topology, arrays);
   Shared& in = *shared;
   const Index nodeCount = topology.nodeCount();
   const double diagonal = diagonalOf(topology);
@@ -147,9 +147,7 @@ bool DeviationCriterion::Internals::prepare(const Hole& hole)
 void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
 {
   const Vector center = this->topology.node(hole.node).position;
-  this->samples.clear();
   this->sampleNodes.clear();
-  this->samples.add(kOrigin);
   this->sampleNodes.push_back(hole.node);
   this->untouched = true;
   for (int i = 0; i < hole.triangleCount; ++i)
@@ -159,9 +157,14 @@ void DeviationCriterion::Internals::gatherSamples(const Hole& hole)
     this->untouched = this->untouched && triangle.spare == 0;
     for (Index node = triangle.first; node != kNone; node = this->next[node])
     {
-      this->samples.add(this->unit * (this->topology.node(node).position - center));
+      this->topology.prefetchNode(node);
       this->sampleNodes.push_back(node);
     }
+  }
+  this->samples.clear();
+  for (const Index node : this->sampleNodes)
+  {
+    this->samples.add(this->unit * (this->topology.node(node).position - center));
   }
   this->sampleRows = this->samples.padded();
   if (!this->useArrays)
@@ -188,13 +191,11 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
 {
   Squares largest{ this->fixedSquare, 0.0 };
   double shape = 1.0;
-  grow(this->squares, std::size_t{ 1 } * filling.count * this->sampleRows.size);
-  grow(this->errors, this->useArrays ? this->squares.size() : 0);
   for (int t = 0; t < filling.count; ++t)
   {
     const Triple& triangle = filling.triangles[t];
     const Candidate candidate = hole.size <= kMaximumCompared
-      ? this->candidates[tripleNumber(triangle[0], triangle[1], triangle[2])]
+      ? Candidate{ this->candidates.isAllowed(triangle), this->candidates.shape(triangle) }
       : this->judge(hole, triangle);
     if (!candidate.valid)
     {
@@ -213,16 +214,25 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
         }
         else
         {
-          largest.include({ this->crossings[pairNumber(i, j)], 0.0 });
+          largest.include({ this->candidates.crossing(i, j), 0.0 });
         }
       }
     }
   }
-  for (int t = 0; t < filling.count; ++t)
+  if (this->useArrays)
   {
-    this->fillRow(hole, filling.triangles[t], t);
+    grow(this->squares, std::size_t{ 1 } * filling.count * this->sampleRows.size);
+    grow(this->errors, this->squares.size());
+    for (int t = 0; t < filling.count; ++t)
+    {
+      this->fillRow(hole, filling.triangles[t], t);
+    }
+    largest.include(this->sampleSquares(filling.count));
   }
-  largest.include(this->sampleSquares(filling.count));
+  else
+  {
+    largest.include(this->nearestSquares(filling));
+  }
   const double score = std::sqrt(largest.largest()) + this->shapeTerm(shape);
   if (score < this->best.score)
   {
@@ -231,7 +241,14 @@ void DeviationCriterion::Internals::offer(const Hole& hole, const HoleTriangulat
     this->best.squares = largest;
     this->best.shape = shape;
     this->best.filling = filling;
-    this->assign(filling);
+    if (this->useArrays)
+    {
+      this->assign(filling);
+    }
+    else
+    {
+      this->assignment.swap(this->nearestTriangles);
+    }
   }
 }
 
@@ -241,7 +258,8 @@ void DeviationCriterion::Internals::compareAll(const Hole& hole)
   this->judgeAll(hole);
   this->measureCandidates(hole);
   HoleTriangulation filling;
-  if (this->chooseTriangulation(hole, filling))
+  if (this->candidates.choose(
+        1.0 / (this->radius * this->radius), this->shapeWeight * this->radius, filling))
   {
     this->offer(hole, filling);
   }
@@ -285,7 +303,7 @@ void DeviationCriterion::Internals::assign(const HoleTriangulation& filling)
       if (square < nearest)
       {
         nearest = square;
-        this->assignment[s] = static_cast<unsigned char>(t);
+        this->assignment[s] = t;
       }
     }
   }
@@ -347,6 +365,7 @@ bool DeviationCriterion::Internals::forbidExisting(const Hole& hole)
       {
         this->forbidden[from][to] = true;
         this->forbidden[to][from] = true;
+        this->anyForbidden = true;
         any = true;
       }
     }
@@ -358,16 +377,15 @@ bool DeviationCriterion::Internals::forbidExisting(const Hole& hole)
 bool DeviationCriterion::Internals::findAllowed(const Hole& hole)
 {
   bool found = this->findBest(hole);
-  bool forbade = false;
   while (found && this->forbidExisting(hole))
   {
-    forbade = true;
     found = this->findBest(hole);
   }
-  for (int i = 0; forbade && i < hole.size; ++i)
+  for (int i = 0; this->anyForbidden && i < hole.size; ++i)
   {
     std::fill_n(this->forbidden[i].begin(), hole.size, false);
   }
+  this->anyForbidden = false;
   return found;
 }
 
@@ -422,6 +440,7 @@ bool DeviationCriterion::retriangulate(
 double DeviationCriterion::confirm(const Hole& hole, HoleTriangulation& filling, double& cost)
 {
   Internals& in = *this->internals_;
+  in.prefetchConfirmed(hole);
   bool folded = false;
   bool found = true;
   while (found && in.refuseFolded(hole))

@@ -63,8 +63,8 @@ public:
 
   /// Nodes where an array is NaN or infinite are kept from now on.
   /// @param topology with the positions of the nodes
-  DeviationCriterion(const TriangleMeshView& mesh, TriangleTopology& topology,
-    const std::vector<NodalArrayView>& arrays, const Weights& weights);
+  DeviationCriterion(
+    TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, const Weights& weights);
   ~DeviationCriterion();
   DeviationCriterion(DeviationCriterion&& other) noexcept;
 

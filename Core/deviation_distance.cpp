@@ -108,18 +108,13 @@ DeviationCriterion::Internals::Squares DeviationCriterion::Internals::crossingSq
   return largest;
 }
 
-// Distances (and array errors) of all samples to one triangle of a triangulation.
+// Distances and array errors of all samples to one triangle of a triangulation.
 void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, int row)
 {
   const int size = this->sampleRows.size;
   float* squareRow = this->squares.data() + std::size_t{ 1 } * row * size;
   DistanceTriangle triangle;
   triangle.set(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
-  if (!this->useArrays)
-  {
-    triangle.squaredDistances(this->sampleRows, squareRow);
-    return;
-  }
   grow(this->weightB, size);
   grow(this->weightC, size);
   grow(this->sums, size);
@@ -154,6 +149,19 @@ void DeviationCriterion::Internals::fillRow(const Hole& hole, const Triple& t, i
   }
 }
 
+// Largest over the samples of the squared distance to the nearest triangle; there are no arrays.
+DeviationCriterion::Internals::Squares DeviationCriterion::Internals::nearestSquares(
+  const HoleTriangulation& filling)
+{
+  const int size = this->sampleRows.size;
+  grow(this->nearest, size);
+  grow(this->nearestTriangles, size);
+  this->triangles.set(this->ring.data(), filling);
+  this->triangles.findNearest(
+    this->sampleRows, this->nearest.data(), this->nearestTriangles.data());
+  return { *std::max_element(this->nearest.begin(), this->nearest.begin() + size), 0.0 };
+}
+
 // Largest over the samples of the squared distance to the nearest triangle, and of the arrays'
 // error there.
 DeviationCriterion::Internals::Squares DeviationCriterion::Internals::sampleSquares(int count) const
@@ -166,21 +174,15 @@ DeviationCriterion::Internals::Squares DeviationCriterion::Internals::sampleSqua
     float nearest[kRowBlock];
     float error[kRowBlock] = {};
     std::copy_n(this->squares.data() + begin, kRowBlock, nearest);
-    if (this->useArrays)
-    {
-      std::copy_n(this->errors.data() + begin, kRowBlock, error);
-    }
+    std::copy_n(this->errors.data() + begin, kRowBlock, error);
     for (int k = 1; k < count; ++k)
     {
       const std::size_t at = std::size_t{ 1 } * k * size + begin;
       const float* row = this->squares.data() + at;
-      if (this->useArrays)
+      const float* errorRow = this->errors.data() + at;
+      for (int i = 0; i < kRowBlock; ++i)
       {
-        const float* errorRow = this->errors.data() + at;
-        for (int i = 0; i < kRowBlock; ++i)
-        {
-          error[i] = row[i] < nearest[i] ? errorRow[i] : error[i];
-        }
+        error[i] = row[i] < nearest[i] ? errorRow[i] : error[i];
       }
       for (int i = 0; i < kRowBlock; ++i)
       {
@@ -194,6 +196,26 @@ DeviationCriterion::Internals::Squares DeviationCriterion::Internals::sampleSqua
     }
   }
   return { largest, largestError };
+}
+
+// Ask for what confirm() reads besides what is known of the hole.
+void DeviationCriterion::Internals::prefetchConfirmed(const Hole& hole) const
+{
+  for (int i = 0; i < hole.triangleCount; ++i)
+  {
+    if (hole.outer[i] != kNoCorner)
+    {
+      const TriangleTopology::Triangle& outer = this->topology.triangle(triangleOf(hole.outer[i]));
+      this->topology.prefetchNode(outer.nodes[cornerOf(hole.outer[i])]);
+    }
+  }
+  if (!this->untouched)
+  {
+    for (const Index node : this->sampleNodes)
+    {
+      this->original.prefetchNode(node);
+    }
+  }
 }
 
 // Collect places in the original triangles and on their edges in the hole. A triangle whose corners
@@ -211,6 +233,10 @@ void DeviationCriterion::Internals::gatherBetween(
     mark(node) |= bit(node);
     this->topology.node(node).value = value;
   };
+  for (const Index node : this->sampleNodes)
+  {
+    this->original.prefetchRing(node);
+  }
   for (std::size_t s = 0; s < this->sampleNodes.size(); ++s)
   {
     enter(this->sampleNodes[s], filling.count == 0 ? 0 : this->assignment[s]);
@@ -249,45 +275,43 @@ void DeviationCriterion::Internals::gatherBetween(
       }
     }
   };
+  // Of a node of a triangle: which new triangle it went to, or where in the ring it is.
+  constexpr std::int32_t kOutside = -1;
+  const auto placeOf = [&](Index node)
+  { return (mark(node) & bit(node)) == 0 ? kOutside : this->topology.node(node).value; };
   for (std::size_t s = 0; s < this->sampleNodes.size(); ++s)
   {
     const Index node = this->sampleNodes[s];
     const int own = filling.count == 0 ? 0 : this->assignment[s];
-    this->original.visitTriangles(node,
-      [&](const std::array<Index, 3>& corners)
+    const Triple& triangle = filling.triangles[own];
+    const auto isAcross = [&](std::int32_t place)
+    {
+      return place < kRing
+        ? place != own
+        : std::find(triangle.begin(), triangle.end(), place - kRing) == triangle.end();
+    };
+    Index before = kNone;
+    std::int32_t placeBefore = kOutside;
+    bool acrossBefore = false;
+    for (const Index entry : this->original.ring(node))
+    {
+      const Index corner = OriginalSurface::nodeOf(entry);
+      std::int32_t place = placeOf(corner);
+      // Each triangle once: by its first node that was removed.
+      if (place != kOutside && place < kRing && corner < node)
       {
-        bool across = filling.count == 0;
-        for (const Index corner : corners)
-        {
-          if (corner == node)
-          {
-            continue;
-          }
-          if ((mark(corner) & bit(corner)) == 0)
-          {
-            return;
-          }
-          const std::int32_t value = this->topology.node(corner).value;
-          if (value < kRing)
-          {
-            // Each triangle once: by its first node that was removed.
-            if (corner < node)
-            {
-              return;
-            }
-            across = across || value != own;
-          }
-          else if (!across)
-          {
-            const Triple& t = filling.triangles[own];
-            across = std::find(t.begin(), t.end(), value - kRing) == t.end();
-          }
-        }
-        if (across)
-        {
-          add(corners);
-        }
-      });
+        place = kOutside;
+      }
+      const bool across = place != kOutside && (filling.count == 0 || isAcross(place));
+      if (!OriginalSurface::isFanStart(entry) && place != kOutside && placeBefore != kOutside &&
+        (across || acrossBefore))
+      {
+        add({ node, before, corner });
+      }
+      before = corner;
+      placeBefore = place;
+      acrossBefore = across;
+    }
   }
   for (const Index node : this->sampleNodes)
   {
@@ -309,28 +333,12 @@ double DeviationCriterion::Internals::betweenSquare(
   {
     return square;
   }
+  const PointRows places = this->between.padded();
   std::vector<float>& nearest = this->nearest;
-  nearest.assign(paddedSize(static_cast<int>(this->between.count)), kInfinity);
-  const auto measure = [&](const Vector& a, const Vector& b, const Vector& c)
-  {
-    DistanceTriangle triangle;
-    if (!triangle.set(a, b, c))
-    {
-      return;
-    }
-    const PointRows rows = this->between.padded();
-    grow(this->squares, rows.size);
-    triangle.squaredDistances(rows, this->squares.data());
-    for (int i = 0; i < rows.size; ++i)
-    {
-      nearest[i] = this->squares[i] < nearest[i] ? this->squares[i] : nearest[i];
-    }
-  };
-  for (int t = 0; t < filling.count; ++t)
-  {
-    const Triple& corners = filling.triangles[t];
-    measure(this->ring[corners[0]], this->ring[corners[1]], this->ring[corners[2]]);
-  }
+  grow(nearest, places.size);
+  grow(this->nearestTriangles, places.size);
+  this->triangles.set(this->ring.data(), filling);
+  this->triangles.findNearest(places, nearest.data(), this->nearestTriangles.data());
   // A removed node on the ring has original triangles on both sides of it: what is far away may be
   // near the triangles around the hole.
   std::size_t far = 0;
@@ -347,8 +355,21 @@ double DeviationCriterion::Internals::betweenSquare(
     return square;
   }
   this->between.count = far;
-  this->between.padded();
-  std::fill(nearest.begin() + far, nearest.begin() + this->between.count, 0.0F);
+  const PointRows rows = this->between.padded();
+  grow(this->squares, rows.size);
+  const auto measure = [&](const Vector& a, const Vector& b, const Vector& c)
+  {
+    DistanceTriangle triangle;
+    if (!triangle.set(a, b, c))
+    {
+      return;
+    }
+    triangle.squaredDistances(rows, this->squares.data());
+    for (std::size_t i = 0; i < far; ++i)
+    {
+      nearest[i] = this->squares[i] < nearest[i] ? this->squares[i] : nearest[i];
+    }
+  };
   const Vector center = this->topology.node(hole.node).position;
   for (int i = 0; i < hole.triangleCount; ++i)
   {
@@ -366,27 +387,16 @@ double DeviationCriterion::Internals::betweenSquare(
 // Largest squared distance from the new surface back to the original one, or `square` if that is
 // larger: along each new edge and at the middle of each new triangle.
 double DeviationCriterion::Internals::reverseSquare(
-  const Hole& hole, const HoleTriangulation& filling, double square) const
+  const Hole& hole, const HoleTriangulation& filling, double square)
 {
   const Vector center = this->topology.node(hole.node).position;
   const double scale = 1.0 / this->unit;
+  grow(this->squares, this->sampleRows.size);
   const auto measure = [&](const Vector& place)
   {
     // Start at the nearest of the removed nodes.
-    int nearest = 0;
-    float least = kInfinity;
-    const float x = static_cast<float>(place.x);
-    const float y = static_cast<float>(place.y);
-    const float z = static_cast<float>(place.z);
-    for (int s = 0; s < static_cast<int>(this->sampleNodes.size()); ++s)
-    {
-      const float dx = this->sampleRows.x[s] - x;
-      const float dy = this->sampleRows.y[s] - y;
-      const float dz = this->sampleRows.z[s] - z;
-      const float distance = dx * dx + dy * dy + dz * dz;
-      nearest = distance < least ? s : nearest;
-      least = distance < least ? distance : least;
-    }
+    const int nearest = nearestPoint(this->sampleRows, static_cast<float>(place.x),
+      static_cast<float>(place.y), static_cast<float>(place.z), this->squares.data());
     const double found = this->original.squaredDistance(
       center + scale * place, this->sampleNodes[nearest], square * scale * scale);
     square = std::max(square, found * this->unit * this->unit);

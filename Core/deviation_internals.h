@@ -12,6 +12,7 @@
 #include "deviation.h"
 #include "diagonal.h"
 #include "fold_rule.h"
+#include "hole_candidates.h"
 #include "original_surface.h"
 #include "triangle_distance.h"
 
@@ -34,12 +35,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // costs more than an equilateral one, as a fraction of the size of the hole.
 constexpr double kShapeWeight = 1e-3;
 
-// Holes of up to so many nodes are filled with the best of all triangulations; larger ones compare
-// ear cutting and some fans.
-constexpr int kMaximumCompared = 16;
+// Holes of more than kMaximumCompared nodes compare ear cutting and some fans.
 constexpr int kMaximumFans = 12;
-constexpr int kMaximumPairs = kMaximumCompared * (kMaximumCompared - 1) / 2;
-constexpr int kMaximumTriples = kMaximumPairs * (kMaximumCompared - 2) / 3;
 
 // Cosine of two neighbours that lie on each other.
 constexpr double kFolded = -0.985;
@@ -49,18 +46,6 @@ constexpr std::size_t kFewSamples = 32;
 
 // Samples are compared in chunks that stay in the cache.
 constexpr int kChunk = 256;
-
-// Positions of pairs i < j and triples i < j < k in lists that do not depend on the hole's size.
-constexpr int pairNumber(int i, int j)
-{
-  return j * (j - 1) / 2 + i;
-}
-constexpr int tripleNumber(int i, int j, int k)
-{
-  return k * (k - 1) * (k - 2) / 6 + j * (j - 1) / 2 + i;
-}
-
-using Triple = std::array<unsigned char, 3>;
 
 inline double squaredDistanceToSegment(const Vector& p, const Vector& a, const Vector& b)
 {
@@ -90,7 +75,8 @@ inline Vector unpacked(std::uint64_t bits)
 }
 
 /// Room for at least so many values; what was there is kept, and nothing is cleared.
-inline void grow(std::vector<float>& row, std::size_t size)
+template <typename Number>
+void grow(std::vector<Number>& row, std::size_t size)
 {
   if (row.size() < size)
   {
@@ -165,10 +151,9 @@ struct DeviationCriterion::Shared
   std::vector<Index> boundaryFirst;
   std::vector<Index> boundaryNext;
 
-  Shared(const TriangleMeshView& mesh, TriangleTopology& topology_,
-    const std::vector<NodalArrayView>& arrays_)
+  Shared(TriangleTopology& topology_, const std::vector<NodalArrayView>& arrays_)
     : topology(topology_)
-    , original(mesh, topology_)
+    , original(topology_)
     , heightField(topology_)
     , arrays(arrays_)
   {
@@ -209,6 +194,7 @@ struct DeviationCriterion::Internals
   Rows between;                     // middles of original edges and triangles
   std::vector<std::uint64_t> marks; // a bit a node: of the hole, see betweenSquare()
   bool untouched = false;           // all triangles of the hole are original ones
+  bool anyForbidden = false;        // edges, see below
   std::vector<float> values;        // of the arrays: a row of samples for each component
   PointRows sampleRows;
   double fixedSquare = 0.0; // what every triangulation costs: the new boundary edge
@@ -223,29 +209,32 @@ struct DeviationCriterion::Internals
   };
   std::array<Point, kMaximumCompared> flat;
 
-  // Triangles of ring nodes that may be part of the new surface.
+  // Triangles of ring nodes that may be part of the new surface: of small holes all, of large ones
+  // one at a time.
+  HoleCandidates candidates;
   struct Candidate
   {
     bool valid = false;
     double shape = 0.0;
-    Vector normal;       // unit
-    float square = 0.0F; // largest over the samples in it
   };
-  std::array<Candidate, kMaximumTriples> candidates;
-  std::array<float, kMaximumPairs> crossings; // of new edges, see crossingSquares()
-  std::vector<float> sides;                   // a row of a chunk for each pair
-  std::array<float, kChunk> flatX;            // samples in the plane, a chunk
+  // Samples of arrays in the plane, a chunk: the sides of each pair, places, errors.
+  std::vector<float> sides;
+  std::array<float, kChunk> flatX;
   std::array<float, kChunk> flatY;
   std::array<float, std::size_t{ 2 } * kChunk> chunkValues;
 
-  // Rows of samples for each triangle of one triangulation.
+  // Of one triangulation: the triangle that each sample is nearest to.
+  DistanceTriangles triangles;
+  std::vector<int> nearestTriangles;
+
+  // Where there are arrays, rows of samples for each triangle.
   std::vector<float> squares;
   std::vector<float> errors;
   std::vector<float> weightB;
   std::vector<float> weightC;
   std::vector<float> sums;
   std::array<std::array<bool, kMaximumPatchCells + 1>, kMaximumPatchCells + 1> forbidden;
-  std::vector<int> refused; // candidates that may not be part of the new surface
+  std::vector<Triple> refused; // candidates that may not be part of the new surface
 
   struct Squares
   {
@@ -268,7 +257,7 @@ struct DeviationCriterion::Internals
     HoleTriangulation filling;
   };
   Best best;
-  std::vector<unsigned char> assignment; // triangle of the best filling for each sample
+  std::vector<int> assignment; // triangle of the best filling for each sample
 
   explicit Internals(std::shared_ptr<Shared> shared_)
     : shared(std::move(shared_))
@@ -309,13 +298,15 @@ struct DeviationCriterion::Internals
   }
   void judgeAll(const Hole& hole);
   void measureCandidates(const Hole& hole);
+  void measureWithArrays(const Hole& hole);
   const float* chunkErrors(const Hole& hole, const Triple& t, int first, int count);
-  bool chooseTriangulation(const Hole& hole, HoleTriangulation& filling) const;
   void fillRow(const Hole& hole, const Triple& t, int row);
   Squares sampleSquares(int count) const;
+  Squares nearestSquares(const HoleTriangulation& filling);
+  void prefetchConfirmed(const Hole& hole) const;
   void gatherBetween(const Hole& hole, const HoleTriangulation& filling);
   double betweenSquare(const Hole& hole, const HoleTriangulation& filling, double square);
-  double reverseSquare(const Hole& hole, const HoleTriangulation& filling, double square) const;
+  double reverseSquare(const Hole& hole, const HoleTriangulation& filling, double square);
   void offer(const Hole& hole, const HoleTriangulation& filling);
   double shapeTerm(double shape) const { return this->shapeWeight * this->radius * (1.0 - shape); }
   void compareAll(const Hole& hole);

@@ -47,38 +47,39 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
   }
   candidate.valid = onRing || triangle.follows(this->normal);
   candidate.shape = triangle.shape();
-  candidate.normal = triangle.normal();
   return candidate;
 }
 
 // All triangles of a small hole, and the edges that they would add.
 void DeviationCriterion::Internals::judgeAll(const Hole& hole)
 {
-  for (int j = 1; j < hole.size; ++j)
+  HoleCandidates& all = this->candidates;
+  all.place(this->ring.data(), hole.size, hole.boundary);
+  all.judge(this->ringNormals.data(), this->oldNormals.data(), this->normal, this->heightField);
+  if (!this->useArrays)
+  {
+    all.findCrossings(this->normal);
+  }
+  for (int j = 1; j < hole.size && (this->useArrays || this->anyForbidden); ++j)
   {
     for (int i = 0; i < j; ++i)
     {
-      this->crossings[pairNumber(i, j)] = this->isRingEdge(hole, i, j)
-        ? 0.0F
-        : static_cast<float>(this->crossingSquares(hole, i, j).largest());
-    }
-  }
-  int number = 0;
-  for (int k = 2; k < hole.size; ++k)
-  {
-    for (int j = 1; j < k; ++j)
-    {
-      for (int i = 0; i < j; ++i)
+      if (this->useArrays)
       {
-        this->candidates[number++] = this->judge(hole,
-          { static_cast<unsigned char>(i), static_cast<unsigned char>(j),
-            static_cast<unsigned char>(k) });
+        all.setCrossing(i, j,
+          this->isRingEdge(hole, i, j)
+            ? 0.0F
+            : static_cast<float>(this->crossingSquares(hole, i, j).largest()));
+      }
+      if (this->forbidden[i][j])
+      {
+        all.forbidEdge(i, j);
       }
     }
   }
-  for (const int triple : this->refused)
+  for (const Triple& t : this->refused)
   {
-    this->candidates[triple].valid = false;
+    all.refuse(t);
   }
 }
 
@@ -94,6 +95,20 @@ void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
   u = (1.0 / std::sqrt(dot(u, u))) * u;
   this->axisX = u;
   this->axisY = cross(this->normal, u);
+  if (this->useArrays)
+  {
+    this->measureWithArrays(hole);
+  }
+  else
+  {
+    this->candidates.measure(
+      this->sampleRows, static_cast<int>(this->sampleNodes.size()), this->axisX, this->axisY);
+  }
+}
+
+// The same of the squared errors of arrays, where they are larger.
+void DeviationCriterion::Internals::measureWithArrays(const Hole& hole)
+{
   for (int i = 0; i < hole.size; ++i)
   {
     this->flat[i] = { static_cast<float>(dot(this->ring[i], this->axisX)),
@@ -123,15 +138,15 @@ void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
         }
       }
     }
-    int number = 0;
     for (int k = 2; k < hole.size; ++k)
     {
       for (int j = 1; j < k; ++j)
       {
-        for (int i = 0; i < j; ++i, ++number)
+        for (int i = 0; i < j; ++i)
         {
-          Candidate& candidate = this->candidates[number];
-          if (!candidate.valid)
+          const Triple t{ static_cast<unsigned char>(i), static_cast<unsigned char>(j),
+            static_cast<unsigned char>(k) };
+          if (!this->candidates.isAllowed(t))
           {
             continue;
           }
@@ -141,12 +156,11 @@ void DeviationCriterion::Internals::measureCandidates(const Hole& hole)
               ? kInside.data()
               : this->sides.data() + std::size_t{ 1 } * kChunk * pairNumber(from, to);
           };
-          const Triple t{ static_cast<unsigned char>(i), static_cast<unsigned char>(j),
-            static_cast<unsigned char>(k) };
-          const float* extra = this->useArrays ? this->chunkErrors(hole, t, first, count) : nullptr;
-          const float square = largestSquaredHeight(chunk, candidate.normal,
-            dot(candidate.normal, this->ring[i]), { side(i, j), side(j, k), side(i, k) }, extra);
-          candidate.square = std::max(candidate.square, square);
+          const float square =
+            largestSquaredHeight(chunk, this->candidates.normal(t), this->candidates.offset(t),
+              { side(i, j), side(j, k), side(i, k) }, this->chunkErrors(hole, t, first, count));
+          this->candidates.setSquare(
+            t, first == 0 ? square : std::max(this->candidates.square(t), square));
         }
       }
     }
@@ -201,72 +215,6 @@ const float* DeviationCriterion::Internals::chunkErrors(
     }
   }
   return largest;
-}
-
-// The triangulation with the smallest sum of the fourth powers of its triangles' costs (their
-// squares squared): nearly the one whose worst triangle is best, and the others are good too.
-// Dynamic programming over the parts of the polygon behind each pair of nodes (G. T. Klincsek:
-// Minimal triangulations of polygonal domains, Annals of Discrete Mathematics 9 (1980)).
-bool DeviationCriterion::Internals::chooseTriangulation(
-  const Hole& hole, HoleTriangulation& filling) const
-{
-  std::array<double, kMaximumPairs> sums;
-  std::array<unsigned char, kMaximumPairs> apexes;
-  const double scale = 1.0 / (this->radius * this->radius);
-  for (int span = 1; span < hole.size; ++span)
-  {
-    for (int i = 0; i + span < hole.size; ++i)
-    {
-      const int k = i + span;
-      const int here = pairNumber(i, k);
-      sums[here] = span == 1 ? 0.0 : HUGE_VAL;
-      for (int j = i + 1; j < k; ++j)
-      {
-        const Candidate& candidate = this->candidates[tripleNumber(i, j, k)];
-        const int before = pairNumber(i, j);
-        const int behind = pairNumber(j, k);
-        if (!candidate.valid)
-        {
-          continue;
-        }
-        const double distance = std::max({ candidate.square, this->crossings[before],
-          this->crossings[behind], this->crossings[here] });
-        const double shape = this->shapeTerm(candidate.shape);
-        const double square = scale * (distance + shape * shape);
-        const double sum = sums[before] + sums[behind] + square * square;
-        if (sum < sums[here])
-        {
-          sums[here] = sum;
-          apexes[here] = static_cast<unsigned char>(j);
-        }
-      }
-    }
-  }
-  if (!(sums[pairNumber(0, hole.size - 1)] < HUGE_VAL))
-  {
-    return false;
-  }
-  filling.count = 0;
-  std::array<std::array<unsigned char, 2>, kMaximumCompared> parts;
-  int left = 0;
-  parts[left++] = { 0, static_cast<unsigned char>(hole.size - 1) };
-  while (left > 0)
-  {
-    const auto [i, k] = parts[--left];
-    const unsigned char j = apexes[pairNumber(i, k)];
-    filling.triangles[filling.count++] = { i, j, k };
-    if (j > i + 1)
-    {
-      parts[left++] = { i, j };
-    }
-    if (k > j + 1)
-    {
-      parts[left++] = { j, k };
-    }
-  }
-  // Parts before wholes: each triangle is an ear then.
-  std::reverse(filling.triangles.begin(), filling.triangles.begin() + filling.count);
-  return true;
 }
 
 // Whether a triangle of the best filling would lie on a neighbour where the old one did not.
@@ -334,7 +282,7 @@ bool DeviationCriterion::Internals::refuseFolded(const Hole& hole)
       {
         Triple sorted = this->best.filling.triangles[t];
         std::sort(sorted.begin(), sorted.end());
-        this->refused.push_back(tripleNumber(sorted[0], sorted[1], sorted[2]));
+        this->refused.push_back(sorted);
       }
     }
   }

@@ -130,15 +130,20 @@ public:
     }
   }
 
+  /// Of a unit normal's component: what is less is rounding.
+  static constexpr double kSmallest = 1e-9;
+
+  bool known() const { return this->known_; }
+
+  /// A unit vector, or zero if there is none.
+  const Vector& direction() const { return this->direction_; }
+
   bool allows(const FilledTriangle& triangle) const
   {
     return !this->known_ || triangle.faces(this->direction_, kSmallest);
   }
 
 private:
-  // Of a unit normal's component: what is less is rounding.
-  static constexpr double kSmallest = 1e-9;
-
   Vector direction_{ 0.0, 0.0, 0.0 };
   bool known_ = false;
 };

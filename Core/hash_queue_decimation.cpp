@@ -409,8 +409,8 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
   const NodalArrayView* array =
     options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr;
   const Status status = options.criterion == Criterion::Deviation
-    ? decimateBy(DeviationCriterion(
-        mesh, topology, options.arrays, { options.scalarWeight, options.shapeWeight }))
+    ? decimateBy(
+        DeviationCriterion(topology, options.arrays, { options.scalarWeight, options.shapeWeight }))
     : options.criterion == Criterion::Quadric ? decimateBy(QuadricCriterion(topology))
                                               : decimateBy(MeanEdgeCriterion(topology, array));
   return { status, status == Status::Cancelled ? "Cancelled." : "" };

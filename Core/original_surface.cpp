@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace undecimate
 {
@@ -67,31 +68,55 @@ double squaredDistanceToTriangle(const Vector& a, const Vector& b, const Vector&
 
 } // namespace
 
-OriginalSurface::OriginalSurface(const TriangleMeshView& mesh, const TriangleTopology& topology)
-  : mesh_(mesh)
-  , topology_(topology)
+OriginalSurface::OriginalSurface(const TriangleTopology& topology)
+  : topology_(topology)
   , first_(topology.nodeCount() + std::size_t{ 1 }, 0)
-  , triangles_(std::size_t{ 3 } * topology.triangleCount())
 {
-  // Filled from the back, so that first_ ends where it should begin.
-  for (Index t = 0; t < topology.triangleCount(); ++t)
+  // A fan has a node more than triangles. Where triangles make no fan each of them is one.
+  const Index triangleCount = topology.triangleCount();
+  for (Index t = 0; t < triangleCount; ++t)
   {
-    for (const Index node : this->corners(t))
+    for (const Index node : topology.triangle(t).nodes)
     {
-      ++this->first_[node];
+      this->first_[node] += topology.isManifold(node) ? 1 : 2;
     }
   }
   Index sum = 0;
-  for (Index& first : this->first_)
+  for (Index node = 0; node < topology.nodeCount(); ++node)
   {
-    sum += first;
-    first = sum;
+    const Index count = this->first_[node] + (topology.isManifold(node) ? 1 : 0);
+    this->first_[node] = sum;
+    sum += count;
   }
-  for (Index t = topology.triangleCount() - 1; t >= 0; --t)
+  this->first_[topology.nodeCount()] = sum;
+  this->entries_.resize(sum);
+  std::vector<Index> filled; // of the nodes without a fan
+  for (Index node = 0; node < topology.nodeCount(); ++node)
   {
-    for (const Index node : this->corners(t))
+    if (topology.isManifold(node))
     {
-      this->triangles_[--this->first_[node]] = t;
+      Index* entry = this->entries_.data() + this->first_[node];
+      topology.visitFan(node, [&entry](Index other) { *entry++ = other; });
+      entry = this->entries_.data() + this->first_[node];
+      *entry = ~*entry;
+    }
+    else if (filled.empty())
+    {
+      filled.assign(topology.nodeCount(), 0);
+    }
+  }
+  for (Index t = 0; t < triangleCount && !filled.empty(); ++t)
+  {
+    const auto& nodes = topology.triangle(t).nodes;
+    for (int c = 0; c < 3; ++c)
+    {
+      if (!topology.isManifold(nodes[c]))
+      {
+        Index* entry = this->entries_.data() + this->first_[nodes[c]] + filled[nodes[c]];
+        entry[0] = ~nodes[nextCorner(c)];
+        entry[1] = nodes[previousCorner(c)];
+        filled[nodes[c]] += 2;
+      }
     }
   }
 }
@@ -99,13 +124,16 @@ OriginalSurface::OriginalSurface(const TriangleMeshView& mesh, const TriangleTop
 Vector OriginalSurface::normal(Index node) const
 {
   Vector sum{ 0.0, 0.0, 0.0 };
-  for (Index i = this->first_[node]; i < this->first_[node + 1]; ++i)
+  const Vector& center = this->topology_.node(node).position;
+  Vector before{ 0.0, 0.0, 0.0 };
+  for (const Index entry : this->ring(node))
   {
-    const std::array<Index, 3> corners = this->corners(this->triangles_[i]);
-    const Vector& a = this->topology_.node(corners[0]).position;
-    sum = sum +
-      cross(this->topology_.node(corners[1]).position - a,
-        this->topology_.node(corners[2]).position - a);
+    const Vector place = this->topology_.node(nodeOf(entry)).position - center;
+    if (!isFanStart(entry))
+    {
+      sum = sum + cross(before, place);
+    }
+    before = place;
   }
   const double length = std::sqrt(squaredLength(sum));
   return length > 0.0 && std::isfinite(length) ? (1.0 / length) * sum : Vector{ 0.0, 0.0, 0.0 };
@@ -128,24 +156,34 @@ double OriginalSurface::squaredDistance(const Vector& point, Index start, double
       break;
     }
     const Index node = *next;
-    visited[visits++] = node;
-    for (Index i = this->first_[node]; i < this->first_[node + 1]; ++i)
+    const Vector center = this->topology_.node(node).position - point;
+    Index before = kNone;
+    Vector placeBefore{ 0.0, 0.0, 0.0 };
+    bool knownBefore = false;
+    for (const Index entry : this->ring(node))
     {
-      const std::array<Index, 3> corners = this->corners(this->triangles_[i]);
-      const double square =
-        squaredDistanceToTriangle(this->topology_.node(corners[0]).position - point,
-          this->topology_.node(corners[1]).position - point,
-          this->topology_.node(corners[2]).position - point);
-      if (square < nearest)
+      const Index other = nodeOf(entry);
+      const Vector place = this->topology_.node(other).position - point;
+      // The triangles around a node that was visited were met there.
+      const bool known = isVisited(other);
+      if (!isFanStart(entry) && !known && !knownBefore)
       {
-        nearest = square;
-        best = corners;
-        if (nearest <= enough)
+        const double square = squaredDistanceToTriangle(center, placeBefore, place);
+        if (square < nearest)
         {
-          return nearest;
+          nearest = square;
+          best = { node, before, other };
+          if (nearest <= enough)
+          {
+            return nearest;
+          }
         }
       }
+      before = other;
+      placeBefore = place;
+      knownBefore = known;
     }
+    visited[visits++] = node;
   }
   return nearest;
 }

@@ -9,8 +9,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
 #include <vector>
 
 namespace undecimate
@@ -58,8 +61,7 @@ TEST(OriginalSurface, NormalsAreUnitAndWeightedByArea)
 {
   const Mesh mesh = testing::cube(2);
   const TriangleTopology topology(mesh.view());
-  const TriangleMeshView view = mesh.view();
-  const OriginalSurface surface(view, topology);
+  const OriginalSurface surface(topology);
   for (Index node = 0; node < mesh.nodeCount(); ++node)
   {
     const Vector normal = surface.normal(node);
@@ -81,9 +83,8 @@ TEST(OriginalSurface, NoNormalWithoutATriangle)
 {
   Mesh mesh = testing::cube(1);
   const Index loose = mesh.addNode(5.0, 5.0, 5.0);
-  const TriangleMeshView view = mesh.view();
-  const TriangleTopology topology(view);
-  const Vector normal = OriginalSurface(view, topology).normal(loose);
+  const TriangleTopology topology(mesh.view());
+  const Vector normal = OriginalSurface(topology).normal(loose);
   EXPECT_EQ(dot(normal, normal), 0.0);
 }
 
@@ -95,8 +96,7 @@ TEST(OriginalSurface, FindsTheNearestTriangleFromTheNearestNode)
   for (const Mesh& mesh : { testing::torus(24, 12), testing::cube(6), testing::flatGrid(9, 7) })
   {
     const TriangleTopology topology(mesh.view());
-    const TriangleMeshView view = mesh.view();
-    const OriginalSurface surface(view, topology);
+    const OriginalSurface surface(topology);
     for (int attempt = 0; attempt < 400; ++attempt)
     {
       const auto any = [&] { return static_cast<Index>(random() % unsigned(mesh.nodeCount())); };
@@ -114,24 +114,50 @@ TEST(OriginalSurface, StopsWhenItIsNearEnough)
 {
   const Mesh mesh = testing::flatGrid(9, 7);
   const TriangleTopology topology(mesh.view());
-  const TriangleMeshView view = mesh.view();
-  const OriginalSurface surface(view, topology);
+  const OriginalSurface surface(topology);
   const Vector p = pointOf(mesh, mesh.nodeCount() - 1);
   EXPECT_GT(surface.squaredDistance(p, 0, HUGE_VAL), 0.0); // the first triangle will do
   EXPECT_EQ(surface.squaredDistance(p, mesh.nodeCount() - 1, -1.0), 0.0);
 }
 
-TEST(OriginalSurface, ReadsTrianglesOfEitherWidth)
+// Interior nodes, boundaries, a bow tie, an edge of three triangles, and a node without any.
+TEST(OriginalSurface, FansHaveEachTriangleOnce)
 {
-  const Mesh mesh = testing::cube(3);
-  const std::vector<std::int64_t> wide(mesh.triangles.begin(), mesh.triangles.end());
-  TriangleMeshView view = mesh.view();
-  view.triangles = nullptr;
-  view.wideTriangles = wide.data();
-  const TriangleTopology topology(view);
-  const OriginalSurface surface(view, topology);
-  const Vector p{ 3.0, 2.0, 1.0 };
-  EXPECT_NEAR(surface.squaredDistance(p, nearestNode(mesh, p), -1.0), trueSquare(mesh, p), 1e-12);
+  Index touching = kNone;
+  Mesh loose = testing::flatGrid(4, 3);
+  loose.addNode(5.0, 5.0, 5.0);
+  for (const Mesh& mesh : { testing::cube(2), testing::flatGrid(5, 4), testing::disc(3, 7),
+         testing::bowTie(2, touching), testing::tJoint(3), loose })
+  {
+    using Corners = std::array<Index, 3>;
+    std::multiset<std::pair<Index, Corners>> expected;
+    for (Index t = 0; t < mesh.triangleCount(); ++t)
+    {
+      const Index* corners = mesh.triangles.data() + std::size_t{ 3 } * static_cast<std::size_t>(t);
+      for (int c = 0; c < 3; ++c)
+      {
+        expected.insert({ corners[c],
+          Corners{ corners[c], corners[nextCorner(c)], corners[previousCorner(c)] } });
+      }
+    }
+    const TriangleTopology topology(mesh.view());
+    const OriginalSurface surface(topology);
+    std::multiset<std::pair<Index, Corners>> found;
+    for (Index node = 0; node < mesh.nodeCount(); ++node)
+    {
+      Index before = kNone;
+      for (const Index entry : surface.ring(node))
+      {
+        const Index other = OriginalSurface::nodeOf(entry);
+        if (!OriginalSurface::isFanStart(entry))
+        {
+          found.insert({ node, Corners{ node, before, other } });
+        }
+        before = other;
+      }
+    }
+    EXPECT_EQ(found, expected);
+  }
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "compiler.h"
 
 #include <cmath>
+#include <limits>
 
 namespace undecimate
 {
@@ -141,6 +142,176 @@ void DistanceTriangle::closestPoints(
   const PointRows& points, float* squares, float* weightB, float* weightC) const
 {
   fillClosest(*this, points.x, points.y, points.z, points.size, squares, weightB, weightC);
+}
+
+// The loops, compiled for wider vectors as well.
+struct DistanceKernels
+{
+  static void set(DistanceTriangles& d, int count);
+  static void findNearest(const DistanceTriangles& d, const PointRows& points,
+    float* __restrict__ squares, int* __restrict__ triangles);
+};
+
+// As DistanceTriangle::set(), of several triangles at a time.
+UNDECIMATE_VECTOR_CLONES
+void DistanceKernels::set(DistanceTriangles& d, int count)
+{
+  constexpr int kSetBlock = 4;
+  static_assert(kMaximumPatchCells % kSetBlock == 0, "whole vectors");
+  const auto corner = [&d](int c, int t) -> Vector {
+    return { d.corners_[c][0][t], d.corners_[c][1][t], d.corners_[c][2][t] };
+  };
+  for (int begin = 0; begin < count; begin += kSetBlock)
+  {
+    double normals[3][kSetBlock];
+    for (int i = 0; i < kSetBlock; ++i)
+    {
+      const Vector a = corner(0, begin + i);
+      const Vector n = cross(corner(1, begin + i) - a, corner(2, begin + i) - a);
+      const double area = std::sqrt(dot(n, n));
+      const double inverse = 1.0 / area;
+      normals[0][i] = inverse * n.x;
+      normals[1][i] = inverse * n.y;
+      normals[2][i] = inverse * n.z;
+    }
+    for (int i = 0; i < kSetBlock; ++i)
+    {
+      const Vector n{ normals[0][i], normals[1][i], normals[2][i] };
+      d.normal_[0][begin + i] = static_cast<float>(n.x);
+      d.normal_[1][begin + i] = static_cast<float>(n.y);
+      d.normal_[2][begin + i] = static_cast<float>(n.z);
+      d.height_[begin + i] = static_cast<float>(dot(n, corner(0, begin + i)));
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const int next = nextCorner(k);
+      for (int i = 0; i < kSetBlock; ++i)
+      {
+        const Vector n{ normals[0][i], normals[1][i], normals[2][i] };
+        const Vector from = corner(k, begin + i);
+        Vector along = corner(next, begin + i) - from;
+        const double length = std::sqrt(dot(along, along));
+        along = (1.0 / length) * along;
+        const Vector inwards = cross(n, along);
+        d.along_[k][0][begin + i] = static_cast<float>(along.x);
+        d.along_[k][1][begin + i] = static_cast<float>(along.y);
+        d.along_[k][2][begin + i] = static_cast<float>(along.z);
+        d.start_[k][begin + i] = static_cast<float>(dot(along, from));
+        d.inwards_[k][0][begin + i] = static_cast<float>(inwards.x);
+        d.inwards_[k][1][begin + i] = static_cast<float>(inwards.y);
+        d.inwards_[k][2][begin + i] = static_cast<float>(inwards.z);
+        d.side_[k][begin + i] = static_cast<float>(dot(inwards, from));
+        d.length_[k][begin + i] = static_cast<float>(length);
+      }
+    }
+  }
+}
+
+UNDECIMATE_VECTOR_CLONES
+void DistanceKernels::findNearest(const DistanceTriangles& d, const PointRows& points,
+  float* __restrict__ squares, int* __restrict__ triangles)
+{
+  for (int begin = 0; begin < points.size; begin += kRowBlock)
+  {
+    float least[kRowBlock];
+    int nearest[kRowBlock];
+    for (int i = 0; i < kRowBlock; ++i)
+    {
+      least[i] = std::numeric_limits<float>::infinity();
+      nearest[i] = 0;
+    }
+    for (int k = 0; k < d.count_; ++k)
+    {
+      const DistanceTriangle t = d.at(k);
+      for (int i = 0; i < kRowBlock; ++i)
+      {
+        const float square =
+          squaredDistance(t, points.x[begin + i], points.y[begin + i], points.z[begin + i]);
+        nearest[i] = square < least[i] ? k : nearest[i];
+        least[i] = smaller(square, least[i]);
+      }
+    }
+    for (int i = 0; i < kRowBlock; ++i)
+    {
+      squares[begin + i] = least[i];
+      triangles[begin + i] = nearest[i];
+    }
+  }
+}
+
+UNDECIMATE_INLINE DistanceTriangle DistanceTriangles::at(int t) const
+{
+  DistanceTriangle triangle;
+  for (int k = 0; k < 3; ++k)
+  {
+    DistanceTriangle::Edge& edge = triangle.edges[k];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      edge.along[axis] = this->along_[k][axis][t];
+      edge.inwards[axis] = this->inwards_[k][axis][t];
+    }
+    edge.start = this->start_[k][t];
+    edge.side = this->side_[k][t];
+    edge.length = this->length_[k][t];
+    edge.inverseHeight = 0.0F; // not needed for distances
+    triangle.normal[k] = this->normal_[k][t];
+  }
+  triangle.height = this->height_[t];
+  return triangle;
+}
+
+void DistanceTriangles::set(const Vector* ring, const HoleTriangulation& filling)
+{
+  this->count_ = filling.count;
+  for (int t = 0; t < filling.count; ++t)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const Vector& p = ring[filling.triangles[t][c]];
+      this->corners_[c][0][t] = p.x;
+      this->corners_[c][1][t] = p.y;
+      this->corners_[c][2][t] = p.z;
+    }
+  }
+  DistanceKernels::set(*this, filling.count);
+}
+
+void DistanceTriangles::findNearest(const PointRows& points, float* squares, int* triangles) const
+{
+  DistanceKernels::findNearest(*this, points, squares, triangles);
+}
+
+UNDECIMATE_VECTOR_CLONES
+int nearestPoint(const PointRows& points, float x, float y, float z, float* __restrict__ squares)
+{
+  float lanes[kRowBlock];
+  for (int i = 0; i < kRowBlock; ++i)
+  {
+    lanes[i] = std::numeric_limits<float>::infinity();
+  }
+  for (int begin = 0; begin < points.size; begin += kRowBlock)
+  {
+    for (int i = 0; i < kRowBlock; ++i)
+    {
+      const float dx = points.x[begin + i] - x;
+      const float dy = points.y[begin + i] - y;
+      const float dz = points.z[begin + i] - z;
+      const float square = dx * dx + dy * dy + dz * dz;
+      squares[begin + i] = square;
+      lanes[i] = smaller(square, lanes[i]);
+    }
+  }
+  float least = lanes[0];
+  for (const float one : lanes)
+  {
+    least = smaller(least, one);
+  }
+  int nearest = 0;
+  while (nearest + 1 < points.size && squares[nearest] != least)
+  {
+    ++nearest;
+  }
+  return nearest;
 }
 
 UNDECIMATE_VECTOR_CLONES

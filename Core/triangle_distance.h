@@ -64,6 +64,41 @@ public:
   float height;
 };
 
+/// The triangles of a hole, prepared and measured together.
+class DistanceTriangles
+{
+public:
+  /// @param ring of the hole
+  /// @param filling of triangles that have an area
+  void set(const Vector* ring, const HoleTriangulation& filling);
+
+  /// Of each point, the squared distance to the nearest triangle, and which one that is (the first
+  /// of those at the same distance). At least one triangle.
+  void findNearest(const PointRows& points, float* squares, int* triangles) const;
+
+private:
+  using Row = float[kMaximumPatchCells];
+
+  DistanceTriangle at(int t) const;
+
+  friend struct DistanceKernels; // vector clones are no members
+
+  int count_ = 0;
+  double corners_[3][3][kMaximumPatchCells] = {}; // corner, axis
+  // As in DistanceTriangle, a row each.
+  Row along_[3][3] = {};
+  Row start_[3] = {};
+  Row inwards_[3][3] = {};
+  Row side_[3] = {};
+  Row length_[3] = {};
+  Row normal_[3] = {};
+  Row height_ = {};
+};
+
+/// The point nearest to a place; of points at the same distance the first.
+/// @param[out] squares of the distances of all points
+int nearestPoint(const PointRows& points, float x, float y, float z, float* squares);
+
 /// Coordinates of points along two axes.
 void project(const PointRows& points, const Vector& axisX, const Vector& axisY, float* x, float* y);
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -312,6 +313,83 @@ TEST_F(TriangleDistance, Needles)
       EXPECT_GE(std::min(weightB[i], weightC[i]), -1e-3F);
       EXPECT_LE(weightB[i] + weightC[i], 1.0F + 1e-3F);
     }
+  }
+}
+
+// Several triangles at a time: the same numbers as one by one, and the first of equally near ones.
+TEST_F(TriangleDistance, OfSeveralTrianglesIsThatOfTheNearest)
+{
+  DistanceTriangles several;
+  for (int round = 0; round < 60; ++round)
+  {
+    const int size = 3 + round % 14;
+    std::vector<Vector> ring;
+    HoleTriangulation filling;
+    for (int i = 0; i < size; ++i)
+    {
+      ring.push_back(any(1.0));
+      ring.back().x += 5.0 * i; // no triangle without an area
+    }
+    for (int i = 1; i + 1 < size; ++i)
+    {
+      filling.triangles[filling.count++] = { 0, static_cast<unsigned char>(i),
+        static_cast<unsigned char>(i + 1) };
+    }
+    Points points;
+    points.add(ring.front()); // of all triangles
+    for (int i = 0; i < 1 + round; ++i)
+    {
+      points.add(any(8.0));
+    }
+    const PointRows rows = points.rows();
+    std::vector<float> expected(rows.size, std::numeric_limits<float>::infinity());
+    std::vector<int> expectedTriangles(rows.size, 0);
+    std::vector<float> squares(rows.size);
+    for (int t = 0; t < filling.count; ++t)
+    {
+      DistanceTriangle one;
+      const auto& corners = filling.triangles[t];
+      ASSERT_TRUE(one.set(ring[corners[0]], ring[corners[1]], ring[corners[2]]));
+      one.squaredDistances(rows, squares.data());
+      for (int i = 0; i < rows.size; ++i)
+      {
+        expectedTriangles[i] = squares[i] < expected[i] ? t : expectedTriangles[i];
+        expected[i] = std::min(expected[i], squares[i]);
+      }
+    }
+    std::vector<int> triangles(rows.size, -1);
+    several.set(ring.data(), filling);
+    several.findNearest(rows, squares.data(), triangles.data());
+    EXPECT_EQ(squares, expected) << size;
+    EXPECT_EQ(triangles, expectedTriangles) << size;
+  }
+}
+
+TEST_F(TriangleDistance, NearestPointIsTheFirstOfEquals)
+{
+  for (int count = 1; count < 40; ++count)
+  {
+    Points points;
+    for (int i = 0; i < count; ++i)
+    {
+      points.add(any(1.0));
+    }
+    const PointRows rows = points.rows();
+    std::vector<float> squares(rows.size);
+    for (int i = 0; i < count; ++i)
+    {
+      const int found = nearestPoint(rows, rows.x[i], rows.y[i], rows.z[i], squares.data());
+      EXPECT_EQ(found, i);
+      EXPECT_EQ(squares[i], 0.0F);
+    }
+    Points twice;
+    for (int i = 0; i < 2 * count; ++i)
+    {
+      twice.add(points.points()[i % count]);
+    }
+    const PointRows all = twice.rows();
+    squares.resize(all.size);
+    EXPECT_EQ(nearestPoint(all, all.x[count], all.y[count], all.z[count], squares.data()), 0);
   }
 }
 

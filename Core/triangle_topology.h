@@ -109,7 +109,7 @@ public:
   {
     std::array<Index, 3> nodes;
     std::array<Corner, 3> across; ///< across[c]: the corner opposite to this triangle's corner c
-    Index first;                  ///< free for the user: head of a list, kNone at first
+    Index first;                  ///< free for the user: a node, kNone at first
     Index spare;                  ///< free for the user, 0 at first
   };
 
@@ -133,7 +133,7 @@ public:
 
   /// Bring the data around a node that will be gathered soon into the cache, in four stages that
   /// each use what the ones before have brought: the node, its triangle, the triangles beside that,
-  /// and the nodes around it with the triangles behind them.
+  /// and the nodes around it with the triangles behind them and the nodes in Triangle::first.
   void prefetchNode(Index node) const { prefetch(&this->nodes_[node]); }
   void prefetchTriangle(Index node) const { this->prefetchTriangleOf(this->nodes_[node].corner); }
   void prefetchNeighbours(Index node) const
@@ -157,6 +157,10 @@ public:
       const int c = cornerOf(corner);
       this->prefetchNode(t.nodes[nextCorner(c)]);
       this->prefetchTriangleOf(t.across[c]);
+      if (t.first != kNone)
+      {
+        this->prefetchNode(t.first);
+      }
       const Corner opposite = t.across[nextCorner(c)];
       corner = opposite == kNoCorner
         ? kNoCorner
@@ -195,6 +199,26 @@ public:
       corner = makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
     } while (corner != start);
     return true;
+  }
+
+  /// Visit(node) for the nodes around a manifold one, counterclockwise as the surface is oriented;
+  /// around an interior node for the first one again at the end. Of a mesh as it was made: later
+  /// the fan of a boundary node may not begin at its corner.
+  template <typename Visit>
+  void visitFan(Index node, Visit&& visit) const
+  {
+    const Corner start = this->nodes_[node].corner;
+    Corner corner = start;
+    visit(this->triangles_[triangleOf(start)].nodes[nextCorner(cornerOf(start))]);
+    do
+    {
+      const Triangle& t = this->triangles_[triangleOf(corner)];
+      visit(t.nodes[previousCorner(cornerOf(corner))]);
+      const Corner opposite = t.across[nextCorner(cornerOf(corner))];
+      corner = opposite == kNoCorner
+        ? kNoCorner
+        : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
+    } while (corner != kNoCorner && corner != start);
   }
 
   /// Whether two nodes share an edge, or, if neither is manifold, it cannot be ruled out.
