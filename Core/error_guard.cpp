@@ -70,23 +70,6 @@ Vector at(const Mesh& mesh, Index node)
   return { p[0], p[1], p[2] };
 }
 
-double diagonalOf(const Mesh& mesh)
-{
-  double square = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-    for (std::size_t i = axis; i < mesh.points.size(); i += 3)
-    {
-      low = std::min(low, mesh.points[i]);
-      high = std::max(high, mesh.points[i]);
-    }
-    square += (high - low) * (high - low);
-  }
-  return std::sqrt(square);
-}
-
 Errors errorsOf(const Mesh& mesh, Criterion criterion, double reduction)
 {
   HashQueueDecimationOptions options;
@@ -108,7 +91,7 @@ Errors errorsOf(const Mesh& mesh, Criterion criterion, double reduction)
     }
     errors.distance = std::max(errors.distance, std::sqrt(nearest));
   }
-  errors.distance /= diagonalOf(mesh);
+  errors.distance /= testing::diagonalOf(mesh);
   return errors;
 }
 
