@@ -18,6 +18,7 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -55,90 +56,151 @@ void read(std::ifstream& file, std::vector<Value>& values, const char* what)
   }
 }
 
-Triangles triangulate(const std::vector<float>& points, const std::vector<std::int32_t>& cells)
+/// A surface: triangles of numbered points.
+struct Surface
 {
-  const auto at = [&points](std::int32_t node)
-  { return Point(points[3 * node], points[3 * node + 1], points[3 * node + 2]); };
+  std::vector<Point> points;
+  std::vector<std::array<int, 3>> corners;
   Triangles triangles;
+};
+
+Surface triangulate(const std::vector<float>& points, const std::vector<std::int32_t>& cells)
+{
+  Surface surface;
+  for (std::size_t i = 0; i < points.size(); i += 3)
+  {
+    surface.points.emplace_back(points[i], points[i + 1], points[i + 2]);
+  }
+  const auto add = [&surface](int a, int b, int c)
+  {
+    const Triangle t(surface.points[a], surface.points[b], surface.points[c]);
+    if (t.squared_area() > 0.0)
+    {
+      surface.corners.push_back({ a, b, c });
+      surface.triangles.push_back(t);
+    }
+  };
   for (std::size_t c = 0; c < cells.size(); c += 4)
   {
-    const int count = cells[c + 3] < 0 ? 3 : 4;
-    Point corner[4];
-    double sum[3] = { 0.0, 0.0, 0.0 };
-    for (int k = 0; k < count; ++k)
+    const std::int32_t* nodes = cells.data() + c;
+    if (nodes[3] < 0)
     {
-      corner[k] = at(cells[c + k]);
+      add(nodes[0], nodes[1], nodes[2]);
+      continue;
+    }
+    double sum[3] = { 0.0, 0.0, 0.0 };
+    for (int k = 0; k < 4; ++k)
+    {
       for (int axis = 0; axis < 3; ++axis)
       {
-        sum[axis] += corner[k][axis] / count;
+        sum[axis] += 0.25 * surface.points[nodes[k]][axis];
       }
     }
-    const Point center(sum[0], sum[1], sum[2]);
-    for (int k = 0; k < count; ++k)
+    const int center = static_cast<int>(surface.points.size());
+    surface.points.emplace_back(sum[0], sum[1], sum[2]);
+    for (int k = 0; k < 4; ++k)
     {
-      const Triangle t(corner[k], corner[(k + 1) % count], center);
-      if (t.squared_area() > 0.0)
-      {
-        triangles.push_back(t);
-      }
+      add(nodes[k], nodes[(k + 1) % 4], center);
     }
   }
-  return triangles;
+  return surface;
 }
 
-/// A piece of a surface, with what is known of its distances to the other one.
+/// A point of one surface, and where the other one is nearest to it.
+struct Place
+{
+  Point point;
+  Tree::Point_and_primitive_id nearest;
+  double distance;
+};
+
+Place measured(const Point& point, const Tree& to, const Tree::Point_and_primitive_id& hint)
+{
+  const auto nearest = to.closest_point_and_primitive(point, hint);
+  return { point, nearest, std::sqrt((nearest.first - point).squared_length()) };
+}
+
+/// A piece of a surface, with what is known of its distance to the other one.
 struct Piece
 {
-  Point corners[3];
+  std::array<Place, 3> corners;
   double most; // no point of it is farther
 };
 
-Piece measured(const Point& a, const Point& b, const Point& c, const Tree& to, double& square)
+Piece bounded(const Place& a, const Place& b, const Place& c)
 {
-  const Point middle = CGAL::centroid(a, b, c);
-  const auto [nearest, triangle] = to.closest_point_and_primitive(middle);
-  const double distance = (nearest - middle).squared_length();
-  square = std::max(square, distance);
-  // The distance to one triangle is convex, so none is larger than the largest at the corners.
-  double radius = 0.0;
-  double most = 0.0;
-  for (const Point& corner : { a, b, c })
+  Piece piece{ { a, b, c }, HUGE_VAL };
+  for (const Place& place : piece.corners)
   {
-    radius = std::max(radius, (corner - middle).squared_length());
-    most = std::max(most, CGAL::squared_distance(corner, *triangle));
+    // The distance to one triangle is convex, so none is larger than the largest at the corners;
+    // and a point is not farther than a corner and the way to it.
+    double square = 0.0;
+    double reach = 0.0;
+    for (const Place& corner : piece.corners)
+    {
+      square =
+        std::max(square, CGAL::squared_distance(corner.point, *place.nearest.second));
+      reach = std::max(reach, (corner.point - place.point).squared_length());
+    }
+    piece.most = std::min({ piece.most, std::sqrt(square), place.distance + std::sqrt(reach) });
   }
-  return { { a, b, c }, std::min(std::sqrt(distance) + std::sqrt(radius), std::sqrt(most)) };
+  return piece;
 }
 
 // The largest distance of a surface's points to the other one, at most `tolerance` too small: a
 // piece is cut into four as long as a point of it could be farther than the farthest one so far.
-double farthest(const Triangles& from, const Tree& to, double tolerance)
+double farthest(const Surface& from, const Tree& to, double tolerance)
 {
-  double square = 0.0;
+  double most = 0.0;
   const auto isNearer = [](const Piece& a, const Piece& b) { return a.most < b.most; };
   std::priority_queue<Piece, std::vector<Piece>, decltype(isNearer)> pieces(isNearer);
-  for (const Triangle& t : from)
+  std::vector<Place> places(from.points.size());
+  std::vector<bool> known(from.points.size(), false);
+  auto hint = to.any_reference_point_and_id();
+  for (const auto& corners : from.corners)
   {
-    for (int k = 0; k < 3; ++k)
+    for (const int point : corners)
     {
-      square = std::max(square, to.squared_distance(t[k]));
+      if (!known[point])
+      {
+        known[point] = true;
+        places[point] = measured(from.points[point], to, { hint.first, hint.second });
+        most = std::max(most, places[point].distance);
+      }
+      hint = { places[point].nearest.first, places[point].nearest.second };
     }
-    pieces.push(measured(t[0], t[1], t[2], to, square));
   }
-  while (!pieces.empty() && pieces.top().most > std::sqrt(square) + tolerance)
+  const auto keep = [&](const Place& a, const Place& b, const Place& c)
   {
-    const Piece piece = pieces.top();
-    pieces.pop();
-    const auto& [a, b, c] = piece.corners;
-    const Point ab = CGAL::midpoint(a, b);
-    const Point bc = CGAL::midpoint(b, c);
-    const Point ca = CGAL::midpoint(c, a);
-    pieces.push(measured(a, ab, ca, to, square));
-    pieces.push(measured(ab, b, bc, to, square));
-    pieces.push(measured(ca, bc, c, to, square));
-    pieces.push(measured(ab, bc, ca, to, square));
+    Piece piece = bounded(a, b, c);
+    if (piece.most > most + tolerance)
+    {
+      pieces.push(std::move(piece));
+    }
+  };
+  for (const auto& [a, b, c] : from.corners)
+  {
+    keep(places[a], places[b], places[c]);
   }
-  return std::sqrt(square);
+  while (!pieces.empty() && pieces.top().most > most + tolerance)
+  {
+    const auto [a, b, c] = pieces.top().corners;
+    pieces.pop();
+    const auto between = [&](const Place& p, const Place& q)
+    {
+      const Place place = measured(CGAL::midpoint(p.point, q.point), to, p.nearest);
+      most = std::max(most, place.distance);
+      return place;
+    };
+    const Place ab = between(a, b);
+    const Place bc = between(b, c);
+    const Place ca = between(c, a);
+    keep(a, ab, ca);
+    keep(ab, b, bc);
+    keep(ca, bc, c);
+    keep(ab, bc, ca);
+  }
+  return most;
 }
 
 } // namespace
@@ -218,12 +280,10 @@ int main(int argc, char** argv)
     {
       read(movedFile, movedPoints, "The file of points");
     }
-    Triangles original = triangulate(points, cells);
-    Triangles coarse = triangulate(moved.empty() ? points : movedPoints, level);
-    Tree originalTree(original.begin(), original.end());
-    Tree coarseTree(coarse.begin(), coarse.end());
-    originalTree.accelerate_distance_queries();
-    coarseTree.accelerate_distance_queries();
+    Surface original = triangulate(points, cells);
+    Surface coarse = triangulate(moved.empty() ? points : movedPoints, level);
+    const Tree originalTree(original.triangles.begin(), original.triangles.end());
+    const Tree coarseTree(coarse.triangles.begin(), coarse.triangles.end());
     std::printf("%d %.9g %.9g %.9g\n", step, farthest(original, coarseTree, tolerance * diagonal),
       farthest(coarse, originalTree, tolerance * diagonal), diagonal);
     std::fflush(stdout);
