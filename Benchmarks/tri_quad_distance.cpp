@@ -138,8 +138,7 @@ Piece bounded(const Place& a, const Place& b, const Place& c)
     double reach = 0.0;
     for (const Place& corner : piece.corners)
     {
-      square =
-        std::max(square, CGAL::squared_distance(corner.point, *place.nearest.second));
+      square = std::max(square, CGAL::squared_distance(corner.point, *place.nearest.second));
       reach = std::max(reach, (corner.point - place.point).squared_length());
     }
     piece.most = std::min({ piece.most, std::sqrt(square), place.distance + std::sqrt(reach) });

@@ -424,6 +424,20 @@ UNDECIMATE_INLINE bool isBadCell(
   return bad;
 }
 
+// Whether a cell may not take the place of another one at a step.
+template <int OldCount, int NewCount>
+UNDECIMATE_INLINE bool isRefused(
+  int lanes, const float* const* oldCorners, const float* const* newCorners, int i)
+{
+  const V before = cellNormal(oldCorners, OldCount, lanes, i);
+  const V now = cellNormal(newCorners, NewCount, lanes, i);
+  const float both = dot(before, now);
+  const float squares = dot(before, before) * dot(now, now);
+  const bool turns = !(both > 0.0F && both * both > kMinimumCosine * kMinimumCosine * squares);
+  const bool bad = turns || isBadCell(newCorners, NewCount, lanes, i, now);
+  return bad && !isBadCell(oldCorners, OldCount, lanes, i, before);
+}
+
 template <int OldCount, int NewCount>
 UNDECIMATE_INLINE int countBad(
   int lanes, const float* const* oldCorners, const float* const* newCorners)
@@ -431,13 +445,7 @@ UNDECIMATE_INLINE int countBad(
   int badLanes = 0;
   for (int i = 0; i < lanes; ++i)
   {
-    const V before = cellNormal(oldCorners, OldCount, lanes, i);
-    const V now = cellNormal(newCorners, NewCount, lanes, i);
-    const float both = dot(before, now);
-    const float squares = dot(before, before) * dot(now, now);
-    const bool turns = !(both > 0.0F && both * both > kMinimumCosine * kMinimumCosine * squares);
-    const bool refused = turns || isBadCell(newCorners, NewCount, lanes, i, now);
-    badLanes += refused && !isBadCell(oldCorners, OldCount, lanes, i, before);
+    badLanes += isRefused<OldCount, NewCount>(lanes, oldCorners, newCorners, i);
   }
   return badLanes;
 }
@@ -466,6 +474,45 @@ bool mayReplaceCell(int lanes, const float* const* oldCorners, int oldCount,
     return hasNoBad<4, 3>(lanes, oldCorners, newCorners);
   }
   return hasNoBad<4, 4>(lanes, oldCorners, newCorners);
+}
+
+namespace
+{
+
+template <int OldCount, int NewCount>
+void raiseByFoldsOf(
+  int lanes, const float* const* oldCorners, const float* const* newCorners, float* squares)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    float longest = 0.0F;
+    for (int k = 0; k < NewCount; ++k)
+    {
+      const V edge = at(newCorners[(k + 1) % NewCount], lanes, i) - at(newCorners[k], lanes, i);
+      longest = larger(longest, dot(edge, edge));
+    }
+    const bool refused = isRefused<OldCount, NewCount>(lanes, oldCorners, newCorners, i);
+    squares[i] = refused ? larger(squares[i], kFoldWeight * kFoldWeight * longest) : squares[i];
+  }
+}
+
+} // namespace
+
+void raiseByFolds(int lanes, const float* const* oldCorners, int oldCount,
+  const float* const* newCorners, int newCount, float* squares)
+{
+  if (oldCount == 3)
+  {
+    raiseByFoldsOf<3, 3>(lanes, oldCorners, newCorners, squares);
+  }
+  else if (newCount == 3)
+  {
+    raiseByFoldsOf<4, 3>(lanes, oldCorners, newCorners, squares);
+  }
+  else
+  {
+    raiseByFoldsOf<4, 4>(lanes, oldCorners, newCorners, squares);
+  }
 }
 
 namespace

@@ -81,6 +81,12 @@ float largest(int lanes, const float* row);
 bool mayReplaceCell(int lanes, const float* const* oldCorners, int oldCount,
   const float* const* newCorners, int newCount);
 
+/// What it counts where mayReplaceCell() refuses: at such steps squares[i] = max(squares[i], square
+/// of kFoldWeight times the new cell's longest edge). Parameters as there.
+void raiseByFolds(int lanes, const float* const* oldCorners, int oldCount,
+  const float* const* newCorners, int newCount, float* squares);
+constexpr float kFoldWeight = 0.5F;
+
 /// Cosine of the largest turn of a cell, and the smallest shape (1 = equilateral) of a corner's
 /// triangle.
 constexpr float kMinimumCosine = 0.15F;

@@ -291,7 +291,8 @@ TEST_P(TimeLanes, RefuseCellsThatTurnOrFold)
   const Rows b = at(1, 0, 0);
   const Rows c = at(1, 1, 0);
   const Rows d = at(0, 1, 0);
-  const auto may = [lanes](
+  std::vector<float> folds(lanes);
+  const auto may = [lanes, &folds](
                      const std::vector<const Rows*>& before, const std::vector<const Rows*>& now)
   {
     std::vector<const float*> old;
@@ -306,8 +307,13 @@ TEST_P(TimeLanes, RefuseCellsThatTurnOrFold)
     {
       fresh.push_back(rows->data());
     }
-    return mayReplaceCell(lanes, old.data(), static_cast<int>(old.size()), fresh.data(),
-      static_cast<int>(fresh.size()));
+    const auto oldCount = static_cast<int>(old.size());
+    const auto count = static_cast<int>(fresh.size());
+    std::fill(folds.begin(), folds.end(), 0.0F);
+    raiseByFolds(lanes, old.data(), oldCount, fresh.data(), count, folds.data());
+    const bool allowed = mayReplaceCell(lanes, old.data(), oldCount, fresh.data(), count);
+    EXPECT_EQ(allowed, largest(lanes, folds.data()) == 0.0F);
+    return allowed;
   };
   EXPECT_TRUE(may({ &a, &b, &c, &d }, { &a, &b, &c }));
   EXPECT_TRUE(may({ &a, &b, &c }, { &a, &b, &d }));
@@ -321,6 +327,11 @@ TEST_P(TimeLanes, RefuseCellsThatTurnOrFold)
   Rows once = at(1, 1, 0);
   once.values[lanes + lanes - 1] = -1.0F;
   EXPECT_FALSE(may({ &a, &b, &c }, { &a, &b, &once })) << "flipped at one step";
+  for (int i = 0; i < lanes; ++i)
+  {
+    // Half the longest edge, which is the diagonal of a square.
+    EXPECT_FLOAT_EQ(folds[i], i + 1 < lanes ? 0.0F : 0.25F * 2.0F);
+  }
   EXPECT_TRUE(may({ &a, &b, &b }, { &a, &c, &b })) << "the old one has no area";
   EXPECT_TRUE(may({ &a, &b, &needle }, { &a, &needle, &b })) << "the old one is a needle";
   EXPECT_TRUE(may({ &a, &b, &inside, &d }, { &a, &d, &c })) << "the old one has a corner inwards";

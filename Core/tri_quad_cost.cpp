@@ -464,7 +464,10 @@ bool TriQuadCost::mayGo(TriQuadPatch& patch, unsigned char target)
   return patch.fanCount == 1 || !patch.hasTwins(target);
 }
 
-bool TriQuadCost::keepsCells(const TriQuadPatch& patch, unsigned char target) const
+// Call use(old corners, their number, new corners, their number) for the cells that stay, as long
+// as it returns true.
+template <typename Use>
+bool TriQuadCost::forChangedCells(const TriQuadPatch& patch, unsigned char target, Use&& use) const
 {
   const auto rowsOf = [this](unsigned char local) { return this->position(local); };
   for (int i = 0; i < patch.cellCount; ++i)
@@ -478,12 +481,51 @@ bool TriQuadCost::keepsCells(const TriQuadPatch& patch, unsigned char target) co
     const float* now[kTriQuadCorners];
     const int beforeCount = cornerRows(patch.cells[i].data(), before, rowsOf);
     const int nowCount = cornerRows(cell.data(), now, rowsOf);
-    if (!mayReplaceCell(this->lanes_, before, beforeCount, now, nowCount))
+    if (!use(before, beforeCount, now, nowCount))
     {
       return false;
     }
   }
   return true;
+}
+
+bool TriQuadCost::keepsCells(const TriQuadPatch& patch, unsigned char target) const
+{
+  return this->forChangedCells(patch, target,
+    [this](const float* const* before, int beforeCount, const float* const* now, int nowCount)
+    { return mayReplaceCell(this->lanes_, before, beforeCount, now, nowCount); });
+}
+
+// What the cells that fold count joins squares_.
+void TriQuadCost::measureFolds(const TriQuadPatch& patch, unsigned char target)
+{
+  this->forChangedCells(patch, target,
+    [this](const float* const* before, int beforeCount, const float* const* now, int nowCount)
+    {
+      raiseByFolds(this->lanes_, before, beforeCount, now, nowCount, this->squares_.data());
+      return true;
+    });
+}
+
+// The neighbours that the topology allows, the one with the smallest folds first.
+void TriQuadCost::rankFolds(TriQuadPatch& patch)
+{
+  int count = 0;
+  for (int i = 0; i < this->targetCount_; ++i)
+  {
+    const unsigned char target = this->targets_[i].local;
+    if (this->mayGo(patch, target))
+    {
+      std::fill(this->squares_.begin(), this->squares_.end(), 0.0F);
+      this->measureFolds(patch, target);
+      const double rank =
+        this->combine(this->squares_.data()) + this->options_.quadWeight * patch.quadsLost(target);
+      this->targets_[count++] = { target, rank };
+    }
+  }
+  this->targetCount_ = count;
+  std::stable_sort(this->targets_.begin(), this->targets_.begin() + count,
+    [](const Target& a, const Target& b) { return a.rank < b.rank; });
 }
 
 void TriQuadCost::Triangles::clear()
@@ -917,6 +959,10 @@ bool TriQuadCost::isTooFar() const
 double TriQuadCost::measure(const TriQuadPatch& patch, unsigned char target, bool back)
 {
   std::fill(this->squares_.begin(), this->squares_.end(), 0.0F);
+  if (patch.folds)
+  {
+    this->measureFolds(patch, target);
+  }
   this->homes_.clear();
   this->newTriangles_.clear();
   if (patch.line[0] != 0)
@@ -972,6 +1018,10 @@ bool TriQuadCost::hasMore(const TriQuadPatch& patch) const
   {
     return false;
   }
+  if (patch.folds)
+  {
+    return true;
+  }
   int removed = 0;
   for (int i = 0; i < patch.cellCount && removed < kRemovedForFull; ++i)
   {
@@ -984,51 +1034,80 @@ bool TriQuadCost::hasMore(const TriQuadPatch& patch) const
   return removed >= kRemovedForFull;
 }
 
+void TriQuadCost::addOldCells(const TriQuadPatch& patch)
+{
+  this->oldTriangles_.clear();
+  for (int i = 0; i < patch.cellCount; ++i)
+  {
+    this->addCell(patch.cells[i].data(), this->oldTriangles_);
+  }
+}
+
 bool TriQuadCost::evaluate(Index node, Effort effort, TriQuadPatch& patch)
 {
   this->patch_ = &patch;
+  patch.folds = false;
   if (!this->gather(node, patch))
   {
     return false;
   }
   this->rankTargets(patch);
-  const bool deviation = this->options_.criterion == TriQuadCriterion::Deviation;
-  const bool full = deviation && effort == Effort::Full;
-  this->preparedCells_.clear();
-  const int wanted = full ? this->options_.candidates : 1;
-  int compared = 0;
-  std::array<Index, TriQuadPatch::kMaximumFans> bestCopies{};
-  for (int i = 0; i < this->targetCount_ && compared < wanted; ++i)
+  const auto isAllowed = [&](int i)
   {
     const unsigned char target = this->targets_[i].local;
-    if (!this->mayGo(patch, target) || !this->keepsCells(patch, target))
+    return this->mayGo(patch, target) && (patch.folds || this->keepsCells(patch, target));
+  };
+  int first = 0;
+  while (first < this->targetCount_ && !isAllowed(first))
+  {
+    ++first;
+  }
+  const bool deviation = this->options_.criterion == TriQuadCriterion::Deviation;
+  const bool full = deviation && effort == Effort::Full;
+  if (first == this->targetCount_)
+  {
+    this->rankFolds(patch);
+    if (!deviation || this->targetCount_ == 0)
+    {
+      return false;
+    }
+    first = 0;
+    patch.folds = true;
+  }
+  patch.target = this->targets_[first].local;
+  patch.cost = this->targets_[first].rank;
+  if (!deviation)
+  {
+    patch.error = this->quadricError(patch, patch.target);
+    return true;
+  }
+  if (patch.folds && !full)
+  {
+    patch.error = patch.cost - this->options_.quadWeight * patch.quadsLost(patch.target);
+    return true;
+  }
+  this->preparedCells_.clear();
+  this->addOldCells(patch);
+  const int wanted = full ? this->options_.candidates : 1;
+  patch.cost = std::numeric_limits<double>::infinity();
+  std::array<Index, TriQuadPatch::kMaximumFans> bestCopies{};
+  int compared = 0;
+  for (int i = first; i < this->targetCount_ && compared < wanted; ++i)
+  {
+    // Of the first one it is known, and its copies were found.
+    if ((i > first || patch.folds) && !isAllowed(i))
     {
       continue;
     }
-    if (!deviation)
-    {
-      patch.target = target;
-      patch.error = this->quadricError(patch, target);
-      patch.cost = this->targets_[i].rank;
-      return true;
-    }
-    if (compared == 0)
-    {
-      this->oldTriangles_.clear();
-      for (int c = 0; c < patch.cellCount; ++c)
-      {
-        this->addCell(patch.cells[c].data(), this->oldTriangles_);
-      }
-    }
+    const unsigned char target = this->targets_[i].local;
     const double extra = this->options_.quadWeight * patch.quadsLost(target);
-    this->limit_ = compared == 0 ? std::numeric_limits<double>::infinity() : patch.cost - extra;
+    this->limit_ = patch.cost - extra;
     const double error = this->measure(patch, target, full);
-    const double cost = error + extra;
-    if (compared == 0 || cost < patch.cost)
+    if (error + extra < patch.cost)
     {
       patch.target = target;
       patch.error = error;
-      patch.cost = cost;
+      patch.cost = error + extra;
       bestCopies = patch.targetCopies;
       patch.homes.swap(this->homes_);
       patch.squares = this->squares_;
@@ -1036,7 +1115,8 @@ bool TriQuadCost::evaluate(Index node, Effort effort, TriQuadPatch& patch)
     ++compared;
   }
   patch.targetCopies = bestCopies;
-  return compared > 0;
+  // Infinite where all new cells are without area at some step.
+  return patch.cost < std::numeric_limits<double>::infinity();
 }
 
 void TriQuadCost::collapsed(const TriQuadPatch& patch)

@@ -4,9 +4,10 @@
 /// @file tri_quad_cost.h
 /// @brief Where a node goes best in a mesh of triangles and quads, and what that costs.
 ///
-/// See tri_quad_decimation.h for what the criteria measure. A collapse is refused if a cell that
-/// changes would turn too far, become a needle, or, as a quad, get a corner that points inwards, at
-/// any of the time steps.
+/// See tri_quad_decimation.h for what the criteria measure. A collapse folds if a cell that changes
+/// would turn too far, become a needle, or, as a quad, get a corner that points inwards, at any of
+/// the time steps. The Quadrics refuse it. With Deviation a node that has no other way may go so,
+/// and half of the cell's longest edge counts as an error at these steps.
 
 #ifndef UNDECIMATE_CORE_TRI_QUAD_COST_H
 #define UNDECIMATE_CORE_TRI_QUAD_COST_H
@@ -46,6 +47,7 @@ struct TriQuadPatch
 
   unsigned char target = 0; ///< local number of the node that it goes to
   double error = 0.0;       ///< of the step, as a fraction of the diagonal
+  bool folds = false;       ///< a cell, for no neighbour is there that it does not
   double cost = 0.0;        ///< with the weight of the quads: what the queue goes by
 
   /// The copies of the target, one for each fan.
@@ -87,7 +89,8 @@ public:
 
   enum class Effort
   {
-    Estimate, ///< Deviation of the neighbour that is best by the quadrics, without the way back
+    Estimate, ///< Deviation of the neighbour that is best by the quadrics, without the way back;
+              ///< of a node that folds what the folds count
     Full      ///< of several neighbours, with the distance from the new cells to the original ones
   };
 
@@ -99,7 +102,7 @@ public:
   bool evaluate(Index node, Effort effort, TriQuadPatch& patch);
 
   /// Whether the full effort is worth it for a patch that was estimated: not with Quadrics, and not
-  /// as long as few nodes were removed from it.
+  /// as long as few nodes were removed from it and nothing folds.
   bool hasMore(const TriQuadPatch& patch) const;
 
   /// Take note that the collapse of a patch that was evaluated is made. Call before the topology
@@ -129,10 +132,15 @@ private:
   bool findLine(TriQuadPatch& patch) const;
   void rankTargets(const TriQuadPatch& patch);
   bool mayGo(TriQuadPatch& patch, unsigned char target);
+  template <typename Use>
+  bool forChangedCells(const TriQuadPatch& patch, unsigned char target, Use&& use) const;
   bool keepsCells(const TriQuadPatch& patch, unsigned char target) const;
+  void measureFolds(const TriQuadPatch& patch, unsigned char target);
+  void rankFolds(TriQuadPatch& patch);
   double combine(const float* squares) const;
   double quadricError(const TriQuadPatch& patch, unsigned char target);
   double measure(const TriQuadPatch& patch, unsigned char target, bool back);
+  void addOldCells(const TriQuadPatch& patch);
   bool isTooFar() const;
   void measureLine(const TriQuadPatch& patch, unsigned char target);
   void measureNewEdges(const TriQuadPatch& patch, unsigned char target);

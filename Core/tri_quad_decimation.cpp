@@ -39,6 +39,7 @@ public:
     , monitor_(monitor)
     , threads_(threads)
     , nodesLeft_(topology.nodeCount())
+    , folds_(topology.nodeCount(), 0)
   {
     for (int thread = 1; thread < threads.count(); ++thread)
     {
@@ -101,6 +102,7 @@ public:
         estimate(this->cost_, node, evaluation);
       }
       evaluation.node = kNone;
+      this->folds_[node] = evaluation.mayGo && evaluation.patch.folds;
       // A node that cannot go now waits outside the queue until a neighbour goes.
       if (!evaluation.mayGo || waits(queue, node, interval, evaluation.estimated))
       {
@@ -112,7 +114,7 @@ public:
         {
           finish(this->cost_, node, evaluation);
         }
-        if (waits(queue, node, interval, intervalOf(evaluation.patch)))
+        if (!evaluation.mayGo || waits(queue, node, interval, intervalOf(evaluation.patch)))
         {
           continue;
         }
@@ -178,7 +180,7 @@ private:
 
   static void finish(TriQuadCost& cost, Index node, Evaluation& evaluation)
   {
-    cost.evaluate(node, TriQuadCost::Effort::Full, evaluation.patch);
+    evaluation.mayGo = cost.evaluate(node, TriQuadCost::Effort::Full, evaluation.patch);
     evaluation.full = true;
   }
 
@@ -211,6 +213,7 @@ private:
             const bool mayGo = !this->kept_[begin + i] &&
               this->costOf(thread).evaluate(begin + i, TriQuadCost::Effort::Estimate, patch);
             intervals[i] = mayGo ? intervalOf(patch) : kNone;
+            this->folds_[begin + i] = mayGo && patch.folds;
           }
         });
       for (Index i = 0; i < size; ++i)
@@ -452,11 +455,13 @@ private:
   {
     for (int i = 0; i < patch.ringSize; ++i)
     {
-      // Evaluated when its turn comes; one that waits outside gets a new chance.
+      // Evaluated when its turn comes; one that waits outside, or that would fold something, gets a
+      // new chance.
       const Index node = patch.ring[i];
       if (!this->kept_[node])
       {
-        queue.insert(node, queue.contains(node) ? queue.interval(node) : interval);
+        const bool stays = queue.contains(node) && !this->folds_[node];
+        queue.insert(node, stays ? queue.interval(node) : interval);
       }
     }
   }
@@ -469,6 +474,7 @@ private:
   Threads& threads_;
   std::vector<TriQuadCost> otherCosts_; // of the threads but the first
   Index nodesLeft_;
+  std::vector<unsigned char> folds_; // of a node: it was in the queue to go by folding something
   Index goal_ = 0;
   StopReason goalReason_ = StopReason::TargetReduction;
   Evaluation alone_;              // of the node at hand if it was not evaluated before

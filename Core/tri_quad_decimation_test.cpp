@@ -275,6 +275,29 @@ TEST(TriQuadDecimation, ErrorsCoverTheRemovedNodes)
   EXPECT_GT(*std::max_element(largest.begin(), largest.end()), 0.2 * decimated.result.error);
 }
 
+// Triangles that are crumpled without any order at three more steps: soon each way of each node
+// turns a cell over.
+TEST(TriQuadDecimation, FoldsWhereThereIsNoOtherWay)
+{
+  std::mt19937 random(3);
+  MixedMesh mesh = testing::mixedGrid(14, 14, false, false, 1.0, random);
+  std::uniform_real_distribution<double> place(0.0, 14.0);
+  mesh.addSteps(3,
+    [&](int, std::array<double, 3>) {
+      return std::array<double, 3>{ place(random), place(random), place(random) };
+    });
+  TriQuadDecimationOptions options = all(TriQuadCriterion::Quadrics);
+  options.targetNodes = 10;
+  const Decimated unfolded(mesh, options);
+  EXPECT_EQ(unfolded.result.stopReason, StopReason::NoRemovableNode);
+  EXPECT_GT(unfolded.result.record.baseNodeCount, 100);
+  options.criterion = TriQuadCriterion::Deviation;
+  Decimated decimated(mesh, options);
+  EXPECT_EQ(decimated.result.stopReason, StopReason::TargetNodes);
+  EXPECT_TRUE(std::isfinite(decimated.result.error));
+  decimated.expectOriginal(mesh);
+}
+
 TEST(TriQuadDecimation, SumAndMaximumDiffer)
 {
   std::mt19937 random(3);
