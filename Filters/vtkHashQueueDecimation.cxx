@@ -14,7 +14,6 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
-#include "vtkSMPTools.h"
 
 #include <limits>
 #include <string>
@@ -44,14 +43,6 @@ static_assert(same(vtkHashQueueDecimation::DEVIATION, Criterion::Deviation) &&
     same(vtkHashQueueDecimation::EXPONENTIAL, IntervalSpacing::Exponential),
   "");
 
-// As many threads as VTK's own filters use; 0, the core's word for all cores, if they use none.
-int threadsOfVTK()
-{
-  return std::string(vtkSMPTools::GetBackend()) == "Sequential"
-    ? 0
-    : vtkSMPTools::GetEstimatedNumberOfThreads();
-}
-
 // What was never removed, for the warning.
 std::string describeKept(const HashQueueDecimationResult& result)
 {
@@ -77,7 +68,6 @@ vtkHashQueueDecimation::vtkHashQueueDecimation()
   this->IntervalSpacing = static_cast<int>(defaults.intervalSpacing);
   this->IntervalNodes = defaults.intervalNodes;
   this->Parallel = defaults.parallel;
-  this->NumberOfThreads = defaults.threads;
 }
 
 vtkHashQueueDecimation::~vtkHashQueueDecimation() = default;
@@ -209,7 +199,6 @@ bool vtkHashQueueDecimation::Decimate(
   options.intervalSpacing = static_cast<undecimate::IntervalSpacing>(this->IntervalSpacing);
   options.intervalNodes = this->IntervalNodes;
   options.parallel = this->Parallel;
-  options.threads = this->NumberOfThreads > 0 ? this->NumberOfThreads : threadsOfVTK();
   options.arrays = view.arrays();
   options.trackCellSources = mesh->GetCellData()->GetNumberOfArrays() > 0;
 
@@ -232,7 +221,6 @@ void vtkHashQueueDecimation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IntervalSpacing: " << this->IntervalSpacing << "\n";
   os << indent << "IntervalNodes: " << this->IntervalNodes << "\n";
   os << indent << "Parallel: " << (this->Parallel ? "On\n" : "Off\n");
-  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Triangulate: " << (this->Triangulate ? "On\n" : "Off\n");
   os << indent << "NumberOfInputTriangles: " << this->NumberOfInputTriangles << "\n";
 }

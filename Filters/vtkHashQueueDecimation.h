@@ -146,23 +146,14 @@ public:
 
   ///@{
   /**
-   * Decimate by several threads. The mesh is decimated in parts whose seams move, so the result is
-   * another one than that of one thread, but about as good; it does not depend on the number of
-   * threads. Meshes of a few thousand points are left to one thread. Not with QUADRIC, which is an
-   * error. Default is off.
+   * Decimate by several threads (NumberOfThreads). The mesh is decimated in parts whose seams move,
+   * so the result is another one than that of one thread, but about as good; it does not depend on
+   * the number of threads. Meshes of a few thousand points are left to one thread. Not with
+   * QUADRIC, which is an error. Default is off.
    */
   vtkSetMacro(Parallel, vtkTypeBool);
   vtkGetMacro(Parallel, vtkTypeBool);
   vtkBooleanMacro(Parallel, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Number of threads with Parallel. 0 is as many as vtkSMPTools uses, or as many as the machine
-   * has cores where vtkSMPTools was built without threads. Default is 0.
-   */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
-  vtkGetMacro(NumberOfThreads, int);
   ///@}
 
   ///@{
@@ -195,7 +186,6 @@ protected:
   int IntervalSpacing;
   double IntervalNodes;
   vtkTypeBool Parallel;
-  int NumberOfThreads;
   vtkTypeBool Triangulate = 0;
 
   vtkIdType NumberOfInputTriangles = 0;

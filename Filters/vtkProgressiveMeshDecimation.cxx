@@ -13,11 +13,13 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSMPTools.h"
 
 #include <algorithm>
 #include <exception>
 #include <new>
 #include <set>
+#include <string>
 
 using namespace undecimate;
 using namespace undecimate::filters;
@@ -229,6 +231,18 @@ void vtkProgressiveMeshDecimation::ForgetWarnings()
   this->Private->said.clear();
 }
 
+// As many threads as VTK's own filters use; 0, the core's word for all cores, if they use none.
+int vtkProgressiveMeshDecimation::GetThreadsToUse() const
+{
+  if (this->NumberOfThreads > 0)
+  {
+    return this->NumberOfThreads;
+  }
+  return std::string(vtkSMPTools::GetBackend()) == "Sequential"
+    ? 0
+    : vtkSMPTools::GetEstimatedNumberOfThreads();
+}
+
 void vtkProgressiveMeshDecimation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
@@ -244,6 +258,7 @@ void vtkProgressiveMeshDecimation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ScalarWeight: " << this->ScalarWeight << "\n";
   os << indent << "PreserveBoundary: " << (this->PreserveBoundary ? "On\n" : "Off\n");
   os << indent << "OriginalPointIds: " << (this->OriginalPointIds ? "On\n" : "Off\n");
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfInputNodes: " << this->NumberOfInputNodes << "\n";
   os << indent << "NumberOfNodes: " << this->NumberOfNodes << "\n";
   os << indent << "NumberOfTriangles: " << this->NumberOfTriangles << "\n";

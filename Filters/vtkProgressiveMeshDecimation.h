@@ -141,6 +141,17 @@ public:
 
   ///@{
   /**
+   * Number of threads of the decimation, where it uses several: vtkTriQuadDecimation always,
+   * vtkHashQueueDecimation with Parallel. The result does not depend on it. 0 is as many as
+   * vtkSMPTools uses, or as many as the machine has cores where vtkSMPTools was built without
+   * threads. Default is 0.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
    * Results of the last decimation: nodes of the input, nodes and triangles of the output, its
    * error in the unit of the criterion, and what stopped the decimation ("target reduction", ...).
    * Of a composite sums over the blocks, the largest error and all reasons; of this process only
@@ -204,6 +215,7 @@ protected:
       defaults.maximumError < NoErrorLimit ? defaults.maximumError : NoErrorLimit;
     this->ScalarWeight = defaults.scalarWeight;
     this->PreserveBoundary = defaults.preserveBoundary;
+    this->NumberOfThreads = defaults.threads;
   }
 
   /// Give the core what the properties say; MaximumError is the subclass's.
@@ -215,7 +227,11 @@ protected:
     options.targetNodes = this->TargetNodes;
     options.scalarWeight = this->ScalarWeight;
     options.preserveBoundary = this->PreserveBoundary || pieces;
+    options.threads = this->GetThreadsToUse();
   }
+
+  /// NumberOfThreads, or what 0 stands for.
+  int GetThreadsToUse() const;
 
   // The subclass calls SetDefaults().
   double TargetReduction;
@@ -224,6 +240,7 @@ protected:
   double ScalarWeight;
   vtkTypeBool PreserveBoundary;
   vtkTypeBool OriginalPointIds = 0;
+  int NumberOfThreads;
 
   vtkIdType NumberOfInputNodes = 0;
   vtkIdType NumberOfNodes = 0;

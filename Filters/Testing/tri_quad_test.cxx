@@ -38,6 +38,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <set>
@@ -505,6 +507,34 @@ TEST(TriQuadDecimation, KeepsTheBoundaryOfAPiece)
   EXPECT_LT(boundaryLeft(), kBoundary / 2);
 }
 
+/// Length of the edges of more than two cells.
+double lengthOfJoints(vtkPolyData* mesh, int mostCells)
+{
+  std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c)
+  {
+    mesh->GetCellPoints(c, corners);
+    for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k)
+    {
+      const vtkIdType a = corners->GetId(k);
+      const vtkIdType b = corners->GetId((k + 1) % corners->GetNumberOfIds());
+      ++edges[std::minmax(a, b)];
+    }
+  }
+  double length = 0.0;
+  for (const auto& [edge, cells] : edges)
+  {
+    EXPECT_LE(cells, mostCells);
+    double a[3];
+    double b[3];
+    mesh->GetPoint(edge.first, a);
+    mesh->GetPoint(edge.second, b);
+    length += cells > 2 ? std::sqrt(vtkMath::Distance2BetweenPoints(a, b)) : 0.0;
+  }
+  return length;
+}
+
 // A wall that stands on a floor and bends over time: at each level they meet along the whole line.
 TEST(TriQuadDecimation, HoldsTJointsTogether)
 {
@@ -536,33 +566,45 @@ TEST(TriQuadDecimation, HoldsTJointsTogether)
     for (const int step : { 0, kSteps - 1 })
     {
       vtkPolyData* mesh = pipe.at(0.5 * step, level);
-      std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
-      vtkNew<vtkIdList> corners;
-      for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c)
-      {
-        mesh->GetCellPoints(c, corners);
-        for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k)
-        {
-          const vtkIdType a = corners->GetId(k);
-          const vtkIdType b = corners->GetId((k + 1) % corners->GetNumberOfIds());
-          ++edges[std::minmax(a, b)];
-        }
-      }
-      double length = 0.0; // of the edges of three cells
-      for (const auto& [edge, cells] : edges)
-      {
-        EXPECT_LE(cells, 3);
-        double a[3];
-        double b[3];
-        mesh->GetPoint(edge.first, a);
-        mesh->GetPoint(edge.second, b);
-        length += cells == 3 ? std::sqrt(vtkMath::Distance2BetweenPoints(a, b)) : 0.0;
-      }
-      EXPECT_NEAR(length, kQuads, 1e-5) << "level " << level << ", step " << step;
+      EXPECT_NEAR(lengthOfJoints(mesh, 3), kQuads, 1e-5) << "level " << level << ", step " << step;
     }
   }
   EXPECT_LT(pipe.decimation->GetNumberOfNodes(), joint.nodeCount() / 5);
   EXPECT_EQ(differences(pipe.at(1.5, 1.0), at(3)), "");
+}
+
+// A wing box of the development data: ribs and spars that meet the skins in T joints.
+TEST(TriQuadDecimation, GivesTheWingBoxBack)
+{
+  const char* folder = std::getenv("UNDECIMATE_DATA");
+  const std::string file =
+    (folder ? std::string(folder) : UNDECIMATE_DATA_DIR "/../../shared/data") +
+    "/static/wingbox.vtp";
+  if (!std::ifstream(file))
+  {
+    GTEST_SKIP() << file
+                 << " is absent (UNDECIMATE_DATA, else ../shared/data beside the repository).";
+  }
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkPolyData* box = reader->GetOutput();
+  vtkNew<vtkTriQuadDecimation> decimation;
+  decimation->SetInputConnection(reader->GetOutputPort());
+  decimation->SetTargetReduction(1.0);
+  decimation->SetMaximumError(1e-4);
+  vtkNew<vtkUndecimation> undecimation;
+  undecimation->SetInputConnection(decimation->GetOutputPort());
+  const double length = lengthOfJoints(box, 4);
+  EXPECT_GT(length, box->GetLength()) << "there are joints";
+  for (const double level : { 0.0, 0.4, 0.8, 1.0 })
+  {
+    undecimation->SetLevel(level);
+    undecimation->Update();
+    EXPECT_NEAR(lengthOfJoints(undecimation->GetOutput(), 4), length, 1e-3 * length) << level;
+  }
+  EXPECT_LT(decimation->GetNumberOfNodes(), box->GetNumberOfPoints() / 5);
+  EXPECT_EQ(differences(undecimation->GetOutput(), box), "");
 }
 
 TEST(TriQuadDecimation, SaysThatScalarsDoNotCountWithQuadrics)
@@ -722,6 +764,24 @@ TEST(TriQuadDecimation, ScalarsAndPartsSteer)
   EXPECT_GT(scalars.decimation->GetNumberOfNodes(), plain.decimation->GetNumberOfNodes());
 }
 
+TEST(TriQuadDecimation, ThreadsDoNotChangeTheResult)
+{
+  Pipe pipe;
+  EXPECT_EQ(pipe.decimation->GetNumberOfThreads(), 0);
+  pipe.decimation->OriginalPointIdsOn();
+  std::vector<vtkSmartPointer<vtkPolyData>> results;
+  for (const int threads : { 1, 3, 0 })
+  {
+    pipe.decimation->SetNumberOfThreads(threads);
+    pipe.decimation->UpdateTimeStep(1.0);
+    results.push_back(vtkSmartPointer<vtkPolyData>::New());
+    results.back()->DeepCopy(pipe.decimation->GetOutput());
+    EXPECT_LT(results.back()->GetNumberOfPoints(), kRows * kRows / 5);
+    EXPECT_EQ(differences(results.back(), results.front()), "") << threads << " threads";
+    EXPECT_EQ(differences(pipe.at(1.0, 1.0), plateAt(2)), "") << threads << " threads";
+  }
+}
+
 TEST(TriQuadDecimation, TheDefaultsAreThoseOfTheCore)
 {
   const undecimate::TriQuadDecimationOptions options;
@@ -733,6 +793,7 @@ TEST(TriQuadDecimation, TheDefaultsAreThoseOfTheCore)
   EXPECT_EQ(filter->GetQuadWeight(), options.quadWeight);
   EXPECT_EQ(filter->GetScalarWeight(), options.scalarWeight);
   EXPECT_EQ(filter->GetPreserveBoundary() != 0, options.preserveBoundary);
+  EXPECT_EQ(filter->GetNumberOfThreads(), options.threads);
   EXPECT_EQ(filter->GetMaximumError(), 1.0) << "which stands for no limit";
   EXPECT_GT(options.maximumError, 1.0);
 }
