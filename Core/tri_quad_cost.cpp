@@ -26,6 +26,9 @@ constexpr float kBoundaryWeight = 1.0F;
 // diagonal; without a limit 0.87 %, in twice the time.
 constexpr int kRemovedForFull = 8;
 
+// So many times are cells around the original cells measured, too, before a distance counts.
+constexpr int kRoundsBack = 2;
+
 std::uint64_t lineKey(Index a, Index b)
 {
   return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
@@ -790,8 +793,22 @@ void TriQuadCost::measureNewEdges(const TriQuadPatch& patch, unsigned char targe
     });
 }
 
+// The input's cells around a node join nearestOriginals_.
+void TriQuadCost::addOriginals(Index node)
+{
+  const auto end = node == kNone ? 0 : this->shared_->firstOriginal[node + 1];
+  for (Index k = node == kNone ? 0 : this->shared_->firstOriginal[node]; k < end; ++k)
+  {
+    auto& cells = this->nearestOriginals_;
+    if (std::find(cells.begin(), cells.end(), this->shared_->originalsOf[k]) == cells.end())
+    {
+      cells.push_back(this->shared_->originalsOf[k]);
+    }
+  }
+}
+
 // The distance of a point to the original cells around the nodes that are nearest to it at some
-// step joins squares_.
+// step joins squares_; where it counts, to those around these, too.
 void TriQuadCost::measureSampleBack(const float* point)
 {
   if (this->isTooFar())
@@ -808,21 +825,31 @@ void TriQuadCost::measureSampleBack(const float* point)
     {
       continue;
     }
-    const Index node = this->placeNodes_[*place];
-    for (Index k = this->shared_->firstOriginal[node]; k < this->shared_->firstOriginal[node + 1];
-         ++k)
-    {
-      const auto end = this->nearestOriginals_.end();
-      if (std::find(this->nearestOriginals_.begin(), end, this->shared_->originalsOf[k]) == end)
-      {
-        this->nearestOriginals_.push_back(this->shared_->originalsOf[k]);
-      }
-    }
+    this->addOriginals(this->placeNodes_[*place]);
   }
   std::fill_n(this->nearest_.data(), lanes, kInfinity);
-  for (const Index cell : this->nearestOriginals_)
+  std::size_t measured = 0;
+  for (int round = 0; round <= kRoundsBack; ++round)
   {
-    this->measureOriginal(cell, point);
+    const std::size_t count = this->nearestOriginals_.size();
+    for (std::size_t i = measured; i < count; ++i)
+    {
+      this->measureOriginal(this->nearestOriginals_[i], point);
+    }
+    if (round == kRoundsBack ||
+      largest(lanes, this->nearest_.data()) <= largest(lanes, this->squares_.data()))
+    {
+      break;
+    }
+    // The nodes nearest to it may have gone from cells of other patches.
+    for (std::size_t i = measured; i < count; ++i)
+    {
+      const Index* nodes =
+        this->mesh_.cells + std::size_t{ kTriQuadCorners } * this->nearestOriginals_[i];
+      std::for_each(
+        nodes, nodes + kTriQuadCorners, [this](Index node) { this->addOriginals(node); });
+    }
+    measured = count;
   }
   raise(lanes, this->nearest_.data(), this->squares_.data());
 }

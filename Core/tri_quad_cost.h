@@ -150,6 +150,7 @@ private:
   void measureBack(const TriQuadPatch& patch, unsigned char target);
   void measureHalfwayBack(const float* corner);
   void measureSampleBack(const float* point);
+  void addOriginals(Index node);
   void measureOriginal(Index cell, const float* point);
 
   // Cells of the patch, cut into triangles: quads around their centers.

@@ -275,6 +275,79 @@ TEST(TriQuadDecimation, ErrorsCoverTheRemovedNodes)
   EXPECT_GT(*std::max_element(largest.begin(), largest.end()), 0.2 * decimated.result.error);
 }
 
+// The largest squared distance at each step of places in the cells of a level (their middles, and
+// half of the way from there to the corners and to the middles of the edges) to the input's cells.
+std::vector<float> squaresOfTheWayBack(const MixedMesh& mesh, const Cells& level)
+{
+  const TimeRows rows = mesh.rows();
+  const std::size_t lanes = rows.lanes();
+  std::vector<float> middles(3 * lanes * mesh.cells.size());
+  std::vector<float> triangles;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+  {
+    const auto corners = testing::cornersOf(mesh.cells[c]);
+    const float* at[4];
+    std::transform(corners.begin(), corners.end(), at, [&](Index node) { return rows.at(node); });
+    float* middleOfCell = middles.data() + 3 * lanes * c;
+    mean(rows.lanes(), at, static_cast<int>(corners.size()), middleOfCell);
+    for (std::size_t k = 0; k < corners.size(); ++k)
+    {
+      triangles.resize(triangles.size() + kTriangleRows * lanes);
+      prepareTriangle(rows.lanes(), at[k], at[(k + 1) % corners.size()], middleOfCell,
+        triangles.data() + triangles.size() - kTriangleRows * lanes);
+    }
+  }
+  std::vector<float> largestSquares(lanes, 0.0F);
+  const auto measure = [&](const float* place)
+  {
+    std::vector<float> squares(lanes, std::numeric_limits<float>::infinity());
+    for (std::size_t t = 0; t < triangles.size(); t += kTriangleRows * lanes)
+    {
+      minimumDistances(rows.lanes(), triangles.data() + t, place, squares.data());
+    }
+    raise(rows.lanes(), squares.data(), largestSquares.data());
+  };
+  for (const auto& cell : level)
+  {
+    const auto corners = testing::cornersOf(cell);
+    const float* at[4];
+    std::transform(corners.begin(), corners.end(), at, [&](Index node) { return rows.at(node); });
+    std::vector<float> center(3 * lanes);
+    std::vector<float> edge(3 * lanes);
+    std::vector<float> place(3 * lanes);
+    mean(rows.lanes(), at, static_cast<int>(corners.size()), center.data());
+    measure(center.data());
+    for (std::size_t k = 0; k < corners.size(); ++k)
+    {
+      middle(rows.lanes(), at[k], at[(k + 1) % corners.size()], edge.data());
+      measure(edge.data());
+      for (const float* end : { at[k], static_cast<const float*>(edge.data()) })
+      {
+        middle(rows.lanes(), center.data(), end, place.data());
+        measure(place.data());
+      }
+    }
+  }
+  return largestSquares;
+}
+
+// The way back from the new cells to the original ones counts, too.
+TEST(TriQuadDecimation, ErrorsCoverTheNewCells)
+{
+  std::mt19937 random(9);
+  for (int i = 0; i < 4; ++i)
+  {
+    MixedMesh mesh = testing::mixedGrid(36, 24, false, false, 0.3, random);
+    mesh.addSteps(3, wave);
+    TriQuadDecimationOptions options = all();
+    options.targetReduction = 0.9;
+    const Decimated decimated(mesh, options);
+    const auto squares = squaresOfTheWayBack(mesh, decimated.cells());
+    const double back = std::sqrt(*std::max_element(squares.begin(), squares.end()));
+    EXPECT_LE(back, decimated.result.error) << i;
+  }
+}
+
 // Triangles that are crumpled without any order at three more steps: soon each way of each node
 // turns a cell over.
 TEST(TriQuadDecimation, FoldsWhereThereIsNoOtherWay)
