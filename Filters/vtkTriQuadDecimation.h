@@ -17,8 +17,9 @@
  * quads that have both become triangles, and all other quads stay quads. A removal that would make
  * the mesh invalid is not done: P1*, P2 and P3 of
  * S. Wundrak, T. Henn, A. Stork: Dynamic Progressive Triangle-Quadrilateral Meshes, WSCG 2006.
- * Nor is one that would flip or fold a cell at a time step that counts. The next node is the one
- * whose removal costs least over these time steps.
+ * One that would flip or fold a cell at a time step that counts is not done with QUADRICS; with
+ * DEVIATION a node that has no other way may go so, and half of the cell's longest edge counts as
+ * an error. The next node is the one whose removal costs least over these time steps.
  *
  * Where three or more surfaces meet (T joints), and between parts, nodes go only along the joint or
  * border, in all surfaces at once, so that nothing comes apart.
