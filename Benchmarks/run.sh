@@ -15,10 +15,11 @@
 #   field-times  CPU time and memory of the field on grids and the gearbox, into Benchmarks/results
 #   page         Documentation/benchmark.md, its plots and the table of the README from Benchmarks/results
 #   test         tests of the error tool and of the comparison
-#   tri_quad     triangles and quads over time: the paper's three tables, and a million nodes (needs CGAL)
+#   tri_quad     triangles and quads over time: the paper's three tables, a million nodes, level and time with the
+#                whole filter, into Benchmarks/results (needs CGAL); static, dynamic, ... behind it: only these
 #   build        only build the drivers and the Python environment
 # Options go to the part: see Benchmarks/README.md. Needs g++, cmake and Python 3 with venv; 'level', 'fast',
-# 'decimation' and 'field-times' need the project built in build/ (or --build FOLDER).
+# 'decimation', 'field-times' and 'tri_quad' need the project built in build/ (or --build FOLDER).
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/undecimate"
@@ -142,10 +143,11 @@ case $part in
     save decimation run decimation
     save limit run limit
     save deviation run deviation --reps 3 --time-each --fresh-rivals --jobs 1
-    save tri_quad run tri_quad
+    printf '\n## tri_quad\n\n'
+    run tri_quad --json "${results:-$cache}/tri_quad.json"
     ;;
   *)
-    sed -n '5,22p' "$0" >&2
+    sed -n '5,23p' "$0" >&2
     exit 2
     ;;
 esac
