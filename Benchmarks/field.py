@@ -74,14 +74,14 @@ class Store:
 
 def measure_rivals(name, rivals, args):
     """Measures what is not in the store yet, and returns those rows."""
-    from metric import VERSION, Reference
+    from metric import FAULTS_VERSION, VERSION, Reference
     points, triangles, values, key, file = load(name)
     store, reference, out = Store(name, key), None, []
     for percent in args.percent:
         for rival in rivals:
             mesh, wanted = store.mesh(rival, percent), wanted_count(len(triangles), percent)
             row = {} if args.fresh else store.row(rival, percent) or {}
-            if row.get("metric") == VERSION and ("failed" in row or "aspect" in row):
+            if row.get("metric") == VERSION and ("failed" in row or row.get("faults") == FAULTS_VERSION):
                 continue
             if "triangles" not in row or not os.path.exists(mesh):
                 row = run_rival(file, rival, mesh, wanted, args.limit, 1)
@@ -93,7 +93,7 @@ def measure_rivals(name, rivals, args):
                 if row.get("metric") != VERSION:
                     carried = z["values"] if "values" in z else None
                     row.update(reference.measure(z["points"], z["triangles"], carried))
-                row.update(reference.faults(z["points"], z["triangles"]))
+                row.update(reference.faults(z["points"], z["triangles"]), faults=FAULTS_VERSION)
             row["metric"] = VERSION
             store.keep(rival, percent, row)
             out.append(dict(row, rival=rival, percent=percent))

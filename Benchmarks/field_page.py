@@ -286,7 +286,7 @@ lower bound; `Testing/Hausdorff` compares with bounds by CGAL.
 
 Over all results. *Flipped*: the normal points against the original's at the closest points of seven points of the triangle, at
 all of them; on grids it is seen from above. *Folded*: an edge whose two triangles lie on each other within {np.degrees(np.arccos(FACING)):.0f} degrees where the
-original's do not. *Degenerate*: twice the area below {FLAT:g} of the longest edge squared. "12 in 3": 12 of them in three results.
+original's do not. Triangles and folded edges of the original itself do not count. *Degenerate*: twice the area below {FLAT:g} of the longest edge squared. "12 in 3": 12 of them in three results.
 *Aspect ratio*: longest edge / (2 sqrt(3) radius of the inscribed circle), 1 for the equilateral triangle: median of the
 results' medians and of their 95 % quantiles. The originals have {np.median([m["aspect"] for m in whole]):.2f} and {np.median([m["aspect_95"] for m in whole]):.2f}.
 

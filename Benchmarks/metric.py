@@ -23,6 +23,7 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from rivals import poly_data
 
 VERSION = 2  # of the measure: results in the cache are of one version
+FAULTS_VERSION = 2  # of faults()
 REFERENCE_SAMPLES = 300_000
 SAMPLES = 200_000
 NEGLIGIBLE = 1e-6  # of the diagonal: rounding of the float32 coordinates
@@ -44,6 +45,13 @@ class Reference:
         self.topology = topology(triangles)
         self.height_field = _facing(v, triangles, -1) == 0
         self.normals = _unit_normals(points, triangles)
+        pairs = _folded_pairs(np.asarray(triangles, np.int64), self.normals)
+        self.has_folds = len(pairs[0]) > 0
+        if self.has_folds:
+            self.places = {place.tobytes(): i for i, place in enumerate(v)}
+            numbers = self._nodes_at(v)[np.asarray(triangles)].tolist()
+            self.own_triangles = {tuple(sorted(t)) for t in numbers}
+            self.folded_edges = {tuple(sorted(set(numbers[a]) & set(numbers[b]))) for a, b in zip(*pairs)}
         self.values = None
         if values is not None:
             self.values = self.samples.interpolate(values)
@@ -53,6 +61,10 @@ class Reference:
 
     def _unit(self, points):
         return ((np.asarray(points, float) - self.center) / self.diagonal).astype(np.float32)
+
+    def _nodes_at(self, v):
+        """Nodes of the reference at the same places, or -1 and less."""
+        return np.array([self.places.get(place.tobytes(), -1 - i) for i, place in enumerate(np.ascontiguousarray(v))])
 
     def measure(self, points, triangles, values=None):
         """hausdorff, rms, ... as fractions of the diagonal, and what happened to the topology; with values
@@ -81,7 +93,8 @@ class Reference:
         """Triangles that no decimator should make, and the shape of all. `flipped` face against the
         reference wherever they are compared: at seven points of the triangle, each with the normal of the closest
         triangle of the reference. `folded` counts edges whose two triangles lie on each other where the
-        reference's do not."""
+        reference's do not. What is a fold of the reference itself, triangle or edge, does not count: at a fold
+        of no width the closest triangle may be the other one."""
         v, triangles = self._unit(points), np.asarray(triangles, np.int64)
         corners = v[triangles].astype(float)
         normals = _unit_normals(points, triangles)
@@ -93,9 +106,13 @@ class Reference:
             cell, _ = self.surface.closest((corners * at[:, None]).sum(1))
             below = self.normals[cell]
             facing = np.maximum(facing, (normals * below).sum(1))
-        first, second = _pairs(triangles)
-        onto = (normals[first] * normals[second]).sum(1) < -FACING
-        first, second = first[onto], second[onto]
+        first, second = _folded_pairs(triangles, normals)
+        if self.has_folds:
+            ids = self._nodes_at(v)
+            facing[[tuple(sorted(t)) in self.own_triangles for t in ids[triangles].tolist()]] = 1
+            own = [tuple(sorted(set(a) & set(b))) in self.folded_edges
+                   for a, b in zip(ids[triangles[first]].tolist(), ids[triangles[second]].tolist())]
+            first, second = first[~np.array(own, bool)], second[~np.array(own, bool)]
         below = [self.normals[self.surface.closest(center[some])[0]] for some in (first, second)]
         thin, aspect = shape(points, triangles)
         return {"flipped_near": int((facing < 0).sum()), "folded": int(((below[0] * below[1]).sum(1) > -.5).sum()),
@@ -185,6 +202,13 @@ def _unit_normals(points, triangles):
     t = np.asarray(points, float)[triangles]
     n = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
     return n / np.maximum(np.linalg.norm(n, axis=1), 1e-300)[:, None]
+
+
+def _folded_pairs(triangles, normals):
+    """Triangles with a common edge that lie on each other."""
+    first, second = _pairs(triangles)
+    onto = (normals[first] * normals[second]).sum(1) < -FACING
+    return first[onto], second[onto]
 
 
 def shape(points, triangles):

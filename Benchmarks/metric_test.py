@@ -70,6 +70,19 @@ class Faults(unittest.TestCase):
         self.assertGreater(flipped, 0)
         self.assertGreater(folded, 0)
 
+    def test_folds_of_the_reference(self):
+        points = self.points.copy()
+        points[:, 2] = 0
+        points[10 * 21 + 10, :2] += [.08, .03]
+        self.reference = Reference(points, self.triangles)
+        self.assertEqual(self.faults(points, self.triangles)[:2], (0, 0))
+        # Others of the same mesh count as before.
+        points = points.copy()
+        points[15 * 21 + 15, :2] += [.08, .03]
+        flipped, folded, _ = self.faults(points, self.triangles)
+        self.assertGreater(flipped, 0)
+        self.assertGreater(folded, 0)
+
     def test_degenerate(self):
         points = self.points.copy()
         a, b, c = self.triangles[100]

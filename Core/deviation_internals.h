@@ -41,6 +41,10 @@ constexpr int kMaximumFans = 12;
 // Cosine of two neighbours that lie on each other.
 constexpr double kFolded = -0.985;
 
+// Cosine with the original normals at its nodes below which a triangle is compared with the
+// original surface itself.
+constexpr double kTurned = 0.3;
+
 // Where so few nodes were removed, triangles are looked at more closely.
 constexpr std::size_t kFewSamples = 32;
 
@@ -315,6 +319,7 @@ struct DeviationCriterion::Internals
   bool findAllowed(const Hole& hole);
   bool forbidExisting(const Hole& hole);
   bool liesOn(const Hole& hole, int triangle) const;
+  bool facesAway(const Hole& hole, const Triple& t) const;
   bool refuseFolded(const Hole& hole);
   void assign(const HoleTriangulation& filling);
   double cost() const;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace undecimate
 {
@@ -217,15 +218,13 @@ const float* DeviationCriterion::Internals::chunkErrors(
   return largest;
 }
 
-// Whether a triangle of the best filling would lie on a neighbour where the old one did not.
+// Whether a triangle of the best filling would lie on a neighbour more closely than the old one
+// did.
 bool DeviationCriterion::Internals::liesOn(const Hole& hole, int triangle) const
 {
   const auto place = [&](Index node) { return this->topology.node(node).position; };
-  const auto isFolded = [](const Vector& a, const Vector& b)
-  {
-    const double product = dot(a, b);
-    return product < 0.0 && product * product > kFolded * kFolded * dot(a, a) * dot(b, b);
-  };
+  const auto cosine = [](const Vector& a, const Vector& b)
+  { return dot(a, b) / std::sqrt(dot(a, a) * dot(b, b)); };
   const auto normalOf = [&](const Triple& t)
   {
     const Vector& a = this->ring[t[0]];
@@ -248,7 +247,8 @@ bool DeviationCriterion::Internals::liesOn(const Hole& hole, int triangle) const
       const auto& nodes = this->topology.triangle(triangleOf(hole.outer[from])).nodes;
       const Vector a = place(nodes[0]);
       const Vector outer = cross(place(nodes[1]) - a, place(nodes[2]) - a);
-      if (isFolded(normal, outer) && !isFolded(this->oldNormals[from], outer))
+      const double now = cosine(normal, outer);
+      if (now < kFolded && !(cosine(this->oldNormals[from], outer) <= now))
       {
         return true;
       }
@@ -259,7 +259,7 @@ bool DeviationCriterion::Internals::liesOn(const Hole& hole, int triangle) const
       const Triple& u = filling.triangles[other];
       const bool shared = std::find(u.begin(), u.end(), from) != u.end() &&
         std::find(u.begin(), u.end(), to) != u.end();
-      if (shared && isFolded(normal, normalOf(u)))
+      if (shared && cosine(normal, normalOf(u)) < kFolded)
       {
         return true;
       }
@@ -268,14 +268,65 @@ bool DeviationCriterion::Internals::liesOn(const Hole& hole, int triangle) const
   return false;
 }
 
-// Refuse the triangles of the best filling of a small hole that would lie on a neighbour; true if
-// there were any.
+// Whether a triangle would point away from the original surface, seen from seven places in it: from
+// all of them to the nearest original triangles. Many small turns would add up to that.
+bool DeviationCriterion::Internals::facesAway(const Hole& hole, const Triple& t) const
+{
+  const FilledTriangle triangle(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
+  if (std::all_of(t.begin(), t.end(),
+        [&](unsigned char i) { return triangle.faces(this->ringNormals[i], kTurned); }))
+  {
+    return false;
+  }
+  // A little inside, so that the corner at a sharp edge is compared with its own side.
+  constexpr double kInside = 0.95;
+  constexpr double kWeights[7][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0, 0.5, 0.5 },
+    { 0.5, 0, 0.5 }, { 0.5, 0.5, 0 }, { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 } };
+  const auto place = [&](Index node) -> const Vector&
+  { return this->topology.node(node).position; };
+  const Vector a = place(hole.ring[t[0]]);
+  const Vector b = place(hole.ring[t[1]]);
+  const Vector c = place(hole.ring[t[2]]);
+  const Vector middle = (1.0 / 3.0) * (a + b + c);
+  return std::all_of(std::begin(kWeights), std::end(kWeights),
+    [&](const auto& weight)
+    {
+      const Vector point =
+        (1.0 - kInside) * middle + kInside * (weight[0] * a + weight[1] * b + weight[2] * c);
+      // The walk may end at a sheet that is not the nearest one: several walks.
+      Index start = hole.node;
+      double square = HUGE_VAL;
+      for (const Index node : this->sampleNodes)
+      {
+        const Vector away = place(node) - point;
+        if (dot(away, away) < square)
+        {
+          square = dot(away, away);
+          start = node;
+        }
+      }
+      OriginalSurface::Nearest nearest = this->original.nearest(point, start, 0.0);
+      for (const unsigned char corner : t)
+      {
+        const OriginalSurface::Nearest other =
+          this->original.nearest(point, hole.ring[corner], 0.0);
+        if (other.square < nearest.square)
+        {
+          nearest = other;
+        }
+      }
+      return this->original.facesAway(point, nearest, triangle.normal());
+    });
+}
+
+// Refuse the triangles of the best filling of a small hole that would lie on a neighbour or point
+// away from the original surface; true if there were any.
 bool DeviationCriterion::Internals::refuseFolded(const Hole& hole)
 {
   bool any = false;
   for (int t = 0; t < this->best.filling.count; ++t)
   {
-    if (this->liesOn(hole, t))
+    if (this->liesOn(hole, t) || this->facesAway(hole, this->best.filling.triangles[t]))
     {
       any = true;
       if (hole.size <= kMaximumCompared)

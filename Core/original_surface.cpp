@@ -139,19 +139,19 @@ Vector OriginalSurface::normal(Index node) const
   return length > 0.0 && std::isfinite(length) ? (1.0 / length) * sum : Vector{ 0.0, 0.0, 0.0 };
 }
 
-double OriginalSurface::squaredDistance(const Vector& point, Index start, double enough) const
+OriginalSurface::Nearest OriginalSurface::nearest(
+  const Vector& point, Index start, double enough) const
 {
   std::array<Index, kMaximumVisits> visited;
   int visits = 0;
   const auto isVisited = [&](Index node) {
     return std::find(visited.begin(), visited.begin() + visits, node) != visited.begin() + visits;
   };
-  double nearest = HUGE_VAL;
-  std::array<Index, 3> best{ start, start, start }; // corners of the nearest triangle
+  Nearest nearest{ HUGE_VAL, { start, start, start } };
   while (visits < kMaximumVisits)
   {
-    const auto next = std::find_if_not(best.begin(), best.end(), isVisited);
-    if (next == best.end())
+    const auto next = std::find_if_not(nearest.nodes.begin(), nearest.nodes.end(), isVisited);
+    if (next == nearest.nodes.end())
     {
       break;
     }
@@ -169,11 +169,10 @@ double OriginalSurface::squaredDistance(const Vector& point, Index start, double
       if (!isFanStart(entry) && !known && !knownBefore)
       {
         const double square = squaredDistanceToTriangle(center, placeBefore, place);
-        if (square < nearest)
+        if (square < nearest.square)
         {
-          nearest = square;
-          best = { node, before, other };
-          if (nearest <= enough)
+          nearest = { square, { node, before, other } };
+          if (square <= enough)
           {
             return nearest;
           }
@@ -186,6 +185,29 @@ double OriginalSurface::squaredDistance(const Vector& point, Index start, double
     visited[visits++] = node;
   }
   return nearest;
+}
+
+bool OriginalSurface::facesAway(
+  const Vector& point, const Nearest& nearest, const Vector& direction) const
+{
+  constexpr double kRounding = 1e-9;
+  for (const Index node : nearest.nodes)
+  {
+    const Vector center = this->topology_.node(node).position - point;
+    const double enough = nearest.square + kRounding * squaredLength(center);
+    Vector before{ 0.0, 0.0, 0.0 };
+    for (const Index entry : this->ring(node))
+    {
+      const Vector place = this->topology_.node(nodeOf(entry)).position - point;
+      if (!isFanStart(entry) && dot(cross(before - center, place - center), direction) < 0.0 &&
+        squaredDistanceToTriangle(center, before, place) <= enough)
+      {
+        return true;
+      }
+      before = place;
+    }
+  }
+  return false;
 }
 
 } // namespace undecimate

@@ -12,6 +12,8 @@
 #include "triangle_topology.h"
 #include "types.h"
 
+#include <array>
+
 namespace undecimate
 {
 
@@ -31,7 +33,24 @@ public:
   /// @param start a node near the point, of at least one triangle
   /// @param enough a squared distance; the first one found that is not larger is returned
   /// Complexity: O(triangles around the nodes that are visited).
-  double squaredDistance(const Vector& point, Index start, double enough) const;
+  double squaredDistance(const Vector& point, Index start, double enough) const
+  {
+    return this->nearest(point, start, enough).square;
+  }
+
+  /// A triangle and the squared distance to it.
+  struct Nearest
+  {
+    double square;
+    std::array<Index, 3> nodes; ///< in the order of the surface
+  };
+
+  /// The same, and the triangle that is nearest.
+  Nearest nearest(const Vector& point, Index start, double enough) const;
+
+  /// Whether a triangle that is no farther from the point than the nearest one (more than one is
+  /// nearest at an edge) faces away from a direction.
+  bool facesAway(const Vector& point, const Nearest& nearest, const Vector& direction) const;
 
   /// The nodes around a node, as entries: the first node of a fan is marked. The fan of an interior
   /// node ends where it began.

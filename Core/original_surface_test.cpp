@@ -110,6 +110,27 @@ TEST(OriginalSurface, FindsTheNearestTriangleFromTheNearestNode)
   }
 }
 
+// At an edge two triangles are nearest, and both are asked which way they face.
+TEST(OriginalSurface, EdgesFaceBothWays)
+{
+  const Mesh mesh = testing::cube(2);
+  const TriangleTopology topology(mesh.view());
+  const OriginalSurface surface(topology);
+  const Vector onEdge{ 2.0, 2.0, 0.5 };
+  const auto facesAway = [&](const Vector& point, const Vector& direction)
+  {
+    const OriginalSurface::Nearest nearest = surface.nearest(point, nearestNode(mesh, point), -1.0);
+    EXPECT_NEAR(nearest.square, trueSquare(mesh, point), 1e-12);
+    return surface.facesAway(point, nearest, direction);
+  };
+  EXPECT_FALSE(facesAway(onEdge, { 1.0, 1.0, 0.0 }));
+  EXPECT_TRUE(facesAway(onEdge, { 1.0, -0.1, 0.0 }));
+  EXPECT_TRUE(facesAway(onEdge, { -0.1, 1.0, 0.0 }));
+  const Vector onFace{ 2.1, 1.3, 0.6 };
+  EXPECT_FALSE(facesAway(onFace, { 0.1, -1.0, 0.0 }));
+  EXPECT_TRUE(facesAway(onFace, { -0.1, 1.0, 0.0 }));
+}
+
 TEST(OriginalSurface, StopsWhenItIsNearEnough)
 {
   const Mesh mesh = testing::flatGrid(9, 7);

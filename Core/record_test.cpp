@@ -326,7 +326,7 @@ Spoilable spoilable(bool sources)
   options.targetReduction = 1.0;
   options.trackCellSources = sources;
   Decimated decimated(mesh, options);
-  EXPECT_GT(decimated.steps(), 50);
+  EXPECT_GT(decimated.steps(), 40);
   return { std::move(decimated.result.record), std::move(decimated.result.baseTriangles) };
 }
 
