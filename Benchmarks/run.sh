@@ -13,6 +13,7 @@
 #   field        the same against the whole field of decimators, into Benchmarks/results (the first time: hours)
 #   field-ours   ours alone against the rivals' results that are there (minutes); --against OTHER.json
 #   field-times  CPU time and memory of the field on grids and the gearbox, into Benchmarks/results
+#   peer         our filter in another bench of decimators: peer FOLDER ARGUMENTS OF ITS bench.py
 #   page         Documentation/benchmark.md, its plots and the table of the README from Benchmarks/results
 #   test         tests of the error tool and of the comparison
 #   tri_quad     triangles and quads over time: the paper's three tables, a million nodes, level and time with the
@@ -42,7 +43,7 @@ compile() { # sources, build folder, options
 
 # The drivers that measure the core; the page and the tests need none.
 build="$cache/benchmarks-build"
-if [ "$part" != page ] && [ "$part" != test ]; then
+if [ "$part" != page ] && [ "$part" != peer ] && [ "$part" != test ]; then
   mkdir -p "$cache"
   compile "$here" "$build" -DCMAKE_BUILD_TYPE=Release
 fi
@@ -55,7 +56,7 @@ environment() { # name, requirements
     cp "$here/$2" "$cache/$1/requirements.txt"
   fi
 }
-environment venv requirements.txt
+[ "$part" = peer ] || environment venv requirements.txt
 python="$cache/venv/bin/python"
 
 # The rivals: two environments and the drivers of the C++ libraries. meshoptimizer comes as the sources in
@@ -106,6 +107,7 @@ run() {
       "$python" "$here/field.py" times "$@"
       ;;
     page) "$python" "$here/field_page.py" "$@" ;;
+    peer) python3 "$here/peer.py" "$@" ;; # of the environment that is active: the other bench's
     test) "$python" "$here/metric_test.py" "$@" ;;
     tri_quad) "$python" "$here/tri_quad.py" --cli "$build/tri_quad_cli" --distance "$build/tri_quad_distance" "$@" ;;
   esac
@@ -113,7 +115,7 @@ run() {
 
 case $part in
   build) ;;
-  linear | fast | limit | decimation | deviation | tri_quad | field | field-ours | field-times | page | test) run "$part" "$@" ;;
+  linear | fast | limit | decimation | deviation | tri_quad | field | field-ours | field-times | page | peer | test) run "$part" "$@" ;;
   level)
     run level-core
     echo
