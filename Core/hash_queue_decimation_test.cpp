@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <map>
 #include <random>
@@ -1111,6 +1113,116 @@ TEST(Deviation, CubesGoToTwelveTriangles)
         EXPECT_EQ(left.count(i), 1U) << "corner " << p[0] << " " << p[1] << " " << p[2];
       }
     }
+  }
+}
+
+/// A cube whose places are moved; its faces stay smooth and its edges sharp.
+Mesh bentCube(int n, const std::function<Vector(const Vector&)>& place)
+{
+  Mesh mesh = testing::cube(n);
+  for (Index node = 0; node < mesh.nodeCount(); ++node)
+  {
+    const auto p = mesh.point(node);
+    const Vector moved = place({ p[0] / n, p[1] / n, p[2] / n });
+    std::copy_n(&moved.x, 3, mesh.points.begin() + std::ptrdiff_t{ 3 } * node);
+  }
+  return mesh;
+}
+
+/// The nodes along an edge of the surface where it turns by more than 40 degrees.
+std::vector<std::pair<Index, Index>> sharpEdges(
+  const Mesh& mesh, const std::vector<Index>& triangles)
+{
+  std::map<std::pair<Index, Index>, Vector> behind;
+  std::vector<std::pair<Index, Index>> sharp;
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    const Vector normal = crossOf(mesh, triangles.data() + i);
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const Index from = triangles[i + c];
+      const Index to = triangles[i + (c + 1) % 3];
+      const auto other = behind.find({ to, from });
+      if (other != behind.end())
+      {
+        const Vector& n = other->second;
+        if (dot(n, normal) < 0.77 * std::sqrt(dot(n, n) * dot(normal, normal)))
+        {
+          sharp.emplace_back(from, to);
+        }
+      }
+      behind[{ from, to }] = normal;
+    }
+  }
+  return sharp;
+}
+
+// Without a feature angle: what cuts a sharp edge is far from it.
+TEST(Deviation, SharpEdgesStaySharp)
+{
+  const Mesh mesh = bentCube(24,
+    [](const Vector& p)
+    {
+      const double angle = 1.5 * p.x;
+      const double radius = 1.0 + 0.7 * p.y;
+      return Vector{ radius * std::cos(angle), radius * std::sin(angle),
+        p.z + 0.2 * std::sin(3.0 * p.x) };
+    });
+  const auto place = [&](Index node)
+  {
+    const auto p = mesh.point(node);
+    return Vector{ p[0], p[1], p[2] };
+  };
+  const auto before = sharpEdges(mesh, mesh.triangles);
+  ASSERT_EQ(before.size(), 12U * 24U);
+  for (const double reduction : { 0.8, 0.95, 0.98 })
+  {
+    HashQueueDecimationOptions options;
+    options.targetReduction = reduction;
+    const Decimated decimated(mesh, options);
+    const auto after = sharpEdges(mesh, baseTriangles(decimated));
+    // Each node of an edge is as near to a sharp edge of the result as the surfaces are.
+    const double error = decimated.result.error * testing::diagonalOf(mesh);
+    double farthest = 0.0;
+    for (const auto& edge : before)
+    {
+      double least = HUGE_VAL;
+      for (const auto& [from, to] : after)
+      {
+        const Vector a = place(from);
+        least =
+          std::min(least, testing::closestPoint(place(edge.first), a, place(to), place(to)).square);
+      }
+      farthest = std::max(farthest, std::sqrt(least));
+    }
+    EXPECT_LE(farthest, 1.5 * error) << reduction;
+  }
+}
+
+// The two sides of a sheet that is thin against its extent stay apart: it keeps its volume.
+TEST(Deviation, ThinPartsDoNotCollapse)
+{
+  const Mesh mesh = bentCube(30,
+    [](const Vector& p) {
+      return Vector{ p.x, p.y, 0.01 * p.z + 0.1 * std::sin(4.0 * p.x) };
+    });
+  const auto volume = [&](const std::vector<Index>& triangles)
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < triangles.size(); i += 3)
+    {
+      const auto p = mesh.point(triangles[i]);
+      sum += dot({ p[0], p[1], p[2] }, crossOf(mesh, triangles.data() + i)) / 6.0;
+    }
+    return sum;
+  };
+  ASSERT_NEAR(volume(mesh.triangles), 0.01, 1e-6);
+  for (const double reduction : { 0.8, 0.95, 0.98 })
+  {
+    HashQueueDecimationOptions options;
+    options.targetReduction = reduction;
+    const Decimated decimated(mesh, options);
+    EXPECT_NEAR(volume(baseTriangles(decimated)), 0.01, 0.0005) << reduction;
   }
 }
 
