@@ -30,6 +30,14 @@
 #define UNDECIMATE_VECTOR_CLONES
 #endif
 
+/// Before a loop over the lanes of a vector, which is to become vector instructions: no iteration
+/// reads what another one writes. Unrolled too early it would become many scalar instructions.
+#if defined(__GNUC__) && !defined(__clang__)
+#define UNDECIMATE_LANES _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
+#else
+#define UNDECIMATE_LANES
+#endif
+
 namespace undecimate
 {
 

@@ -329,20 +329,35 @@ double DeviationCriterion::Internals::betweenSquare(
   const Hole& hole, const HoleTriangulation& filling, double square)
 {
   this->gatherBetween(hole, filling);
-  if (this->between.count == 0)
+  const std::size_t places = this->between.count;
+  if (places == 0)
   {
     return square;
   }
-  const PointRows places = this->between.padded();
-  std::vector<float>& nearest = this->nearest;
-  grow(nearest, places.size);
-  grow(this->nearestTriangles, places.size);
   this->triangles.set(this->ring.data(), filling);
-  this->triangles.findNearest(places, nearest.data(), this->nearestTriangles.data());
+  grow(this->nearestTriangles, this->between.count + kRowBlock);
+  // Most lie over a new triangle and near enough.
+  this->triangles.markNear(
+    this->between.padded(), static_cast<float>(square), this->nearestTriangles.data());
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < places; ++i)
+  {
+    this->between.move(i, left);
+    left += this->nearestTriangles[i] == 0 ? 1 : 0;
+  }
+  if (left == 0)
+  {
+    return square;
+  }
+  this->between.count = left;
+  const PointRows unsure = this->between.padded();
+  std::vector<float>& nearest = this->nearest;
+  grow(nearest, unsure.size);
+  this->triangles.findNearest(unsure, nearest.data(), this->nearestTriangles.data());
   // A removed node on the ring has original triangles on both sides of it: what is far away may be
   // near the triangles around the hole.
   std::size_t far = 0;
-  for (std::size_t i = 0; i < this->between.count; ++i)
+  for (std::size_t i = 0; i < left; ++i)
   {
     if (nearest[i] > square)
     {
@@ -391,14 +406,18 @@ double DeviationCriterion::Internals::reverseSquare(
 {
   const Vector center = this->topology.node(hole.node).position;
   const double scale = 1.0 / this->unit;
-  grow(this->squares, this->sampleRows.size);
   const auto measure = [&](const Vector& place)
   {
     // Start at the nearest of the removed nodes.
     const int nearest = nearestPoint(this->sampleRows, static_cast<float>(place.x),
-      static_cast<float>(place.y), static_cast<float>(place.z), this->squares.data());
-    const double found = this->original.squaredDistance(
-      center + scale * place, this->sampleNodes[nearest], square * scale * scale);
+      static_cast<float>(place.y), static_cast<float>(place.z));
+    const Vector point = center + scale * place;
+    const double enough = square * scale * scale;
+    if (this->original.isNear(point, this->sampleNodes[nearest], enough))
+    {
+      return;
+    }
+    const double found = this->original.squaredDistance(point, this->sampleNodes[nearest], enough);
     square = std::max(square, found * this->unit * this->unit);
   };
   for (int t = 0; t < filling.count; ++t)

@@ -139,6 +139,42 @@ Vector OriginalSurface::normal(Index node) const
   return length > 0.0 && std::isfinite(length) ? (1.0 / length) * sum : Vector{ 0.0, 0.0, 0.0 };
 }
 
+bool OriginalSurface::isNear(const Vector& point, Index node, double enough) const
+{
+  constexpr double kRounding = 1e-12; // of the square of the distance from the node
+  const Vector& center = this->topology_.node(node).position;
+  const Vector seen = point - center;
+  const double limit = enough - kRounding * dot(seen, seen);
+  const double rest = dot(seen, seen) - limit;
+  Vector before{ 0.0, 0.0, 0.0 };
+  double alongBefore = 0.0;
+  double squareBefore = 0.0;
+  for (const Index entry : this->ring(node))
+  {
+    const Vector edge = this->topology_.node(nodeOf(entry)).position - center;
+    const double along = dot(edge, seen);
+    const double square = dot(edge, edge);
+    if (!isFanStart(entry))
+    {
+      // Barycentric coordinates, times the determinant, and with them the height's square: what
+      // the part of the point's place in the plane leaves.
+      const double product = dot(before, edge);
+      const double determinant = squareBefore * square - product * product;
+      const double b = square * alongBefore - product * along;
+      const double c = squareBefore * along - product * alongBefore;
+      if (b >= 0.0 && c >= 0.0 && b + c <= determinant &&
+        rest * determinant <= b * alongBefore + c * along)
+      {
+        return determinant > 0.0;
+      }
+    }
+    before = edge;
+    alongBefore = along;
+    squareBefore = square;
+  }
+  return false;
+}
+
 OriginalSurface::Nearest OriginalSurface::nearest(
   const Vector& point, Index start, double enough) const
 {

@@ -52,6 +52,11 @@ public:
   /// nearest at an edge) faces away from a direction.
   bool facesAway(const Vector& point, const Nearest& nearest, const Vector& direction) const;
 
+  /// Whether a point lies over or under one of the triangles around a node, and the square of its
+  /// height there is surely at most `enough`: what squaredDistance() finds is then not larger.
+  /// Takes less time.
+  bool isNear(const Vector& point, Index node, double enough) const;
+
   /// The nodes around a node, as entries: the first node of a fan is marked. The fan of an interior
   /// node ends where it began.
   struct Ring

@@ -141,6 +141,44 @@ TEST(OriginalSurface, StopsWhenItIsNearEnough)
   EXPECT_EQ(surface.squaredDistance(p, mesh.nodeCount() - 1, -1.0), 0.0);
 }
 
+// What is near is so by the triangles around the node; over the middle of one of them nothing else
+// is asked for.
+TEST(OriginalSurface, KnowsWhatIsNearTheTrianglesAroundANode)
+{
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  int near = 0;
+  int far = 0;
+  for (const Mesh& mesh : { testing::torus(24, 12), testing::cube(6), testing::flatGrid(9, 7) })
+  {
+    const TriangleTopology topology(mesh.view());
+    const OriginalSurface surface(topology);
+    for (int attempt = 0; attempt < 400; ++attempt)
+    {
+      const Index t = static_cast<Index>(random() % unsigned(mesh.triangleCount()));
+      const auto& nodes = topology.triangle(t).nodes;
+      const Vector a = pointOf(mesh, nodes[0]);
+      const Vector b = pointOf(mesh, nodes[1]);
+      const Vector c = pointOf(mesh, nodes[2]);
+      Vector normal = cross(b - a, c - a);
+      normal = (1.0 / std::sqrt(dot(normal, normal))) * normal;
+      const double height = 0.02 * part(random);
+      const Vector p = (1.0 / 3.0) * (a + b + c) + height * normal;
+      const double enough = 0.02 * 0.02 * part(random);
+      const double found = surface.squaredDistance(p, nodes[0], enough);
+      const bool isNear = surface.isNear(p, nodes[0], enough);
+      ++(isNear ? near : far);
+      EXPECT_TRUE(!isNear || found <= enough);
+      EXPECT_TRUE(isNear || height * height > enough * (1.0 - 1e-6));
+    }
+    // Beside the surface there is nothing over it.
+    const Vector outside{ 100.0, 100.0, 100.0 };
+    EXPECT_FALSE(surface.isNear(outside, 0, 1e-3));
+  }
+  EXPECT_GT(near, 100);
+  EXPECT_GT(far, 100);
+}
+
 // Interior nodes, boundaries, a bow tie, an edge of three triangles, and a node without any.
 TEST(OriginalSurface, FansHaveEachTriangleOnce)
 {

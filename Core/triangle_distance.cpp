@@ -150,6 +150,8 @@ struct DistanceKernels
   static void set(DistanceTriangles& d, int count);
   static void findNearest(const DistanceTriangles& d, const PointRows& points,
     float* __restrict__ squares, int* __restrict__ triangles);
+  static void markNear(
+    const DistanceTriangles& d, const PointRows& points, float enough, int* __restrict__ marks);
 };
 
 // As DistanceTriangle::set(), of several triangles at a time.
@@ -239,6 +241,42 @@ void DistanceKernels::findNearest(const DistanceTriangles& d, const PointRows& p
   }
 }
 
+UNDECIMATE_VECTOR_CLONES
+void DistanceKernels::markNear(
+  const DistanceTriangles& d, const PointRows& points, float enough, int* __restrict__ marks)
+{
+  for (int begin = 0; begin < points.size; begin += kRowBlock)
+  {
+    int near[kRowBlock] = {};
+    for (int k = 0; k < d.count_; ++k)
+    {
+      UNDECIMATE_LANES
+      for (int i = 0; i < kRowBlock; ++i)
+      {
+        const float x = points.x[begin + i];
+        const float y = points.y[begin + i];
+        const float z = points.z[begin + i];
+        const auto side = [&](int edge)
+        {
+          return d.inwards_[edge][0][k] * x + d.inwards_[edge][1][k] * y +
+            d.inwards_[edge][2][k] * z - d.side_[edge][k];
+        };
+        const float side0 = side(0);
+        const float side1 = side(1);
+        const float side2 = side(2);
+        const float height =
+          d.normal_[0][k] * x + d.normal_[1][k] * y + d.normal_[2][k] * z - d.height_[k];
+        near[i] |=
+          (side0 >= 0.0F) & (side1 >= 0.0F) & (side2 >= 0.0F) & (height * height <= enough);
+      }
+    }
+    for (int i = 0; i < kRowBlock; ++i)
+    {
+      marks[begin + i] = near[i];
+    }
+  }
+}
+
 UNDECIMATE_INLINE DistanceTriangle DistanceTriangles::at(int t) const
 {
   DistanceTriangle triangle;
@@ -281,35 +319,41 @@ void DistanceTriangles::findNearest(const PointRows& points, float* squares, int
   DistanceKernels::findNearest(*this, points, squares, triangles);
 }
 
+void DistanceTriangles::markNear(const PointRows& points, float enough, int* marks) const
+{
+  DistanceKernels::markNear(*this, points, enough, marks);
+}
+
 UNDECIMATE_VECTOR_CLONES
-int nearestPoint(const PointRows& points, float x, float y, float z, float* __restrict__ squares)
+int nearestPoint(const PointRows& points, float x, float y, float z)
 {
   float lanes[kRowBlock];
+  int numbers[kRowBlock];
   for (int i = 0; i < kRowBlock; ++i)
   {
     lanes[i] = std::numeric_limits<float>::infinity();
+    numbers[i] = i;
   }
   for (int begin = 0; begin < points.size; begin += kRowBlock)
   {
+    UNDECIMATE_LANES
     for (int i = 0; i < kRowBlock; ++i)
     {
       const float dx = points.x[begin + i] - x;
       const float dy = points.y[begin + i] - y;
       const float dz = points.z[begin + i] - z;
       const float square = dx * dx + dy * dy + dz * dz;
-      squares[begin + i] = square;
+      numbers[i] = square < lanes[i] ? begin + i : numbers[i];
       lanes[i] = smaller(square, lanes[i]);
     }
   }
   float least = lanes[0];
-  for (const float one : lanes)
+  int nearest = numbers[0];
+  for (int i = 1; i < kRowBlock; ++i)
   {
-    least = smaller(least, one);
-  }
-  int nearest = 0;
-  while (nearest + 1 < points.size && squares[nearest] != least)
-  {
-    ++nearest;
+    const bool first = lanes[i] < least || (lanes[i] == least && numbers[i] < nearest);
+    nearest = first ? numbers[i] : nearest;
+    least = smaller(lanes[i], least);
   }
   return nearest;
 }

@@ -76,6 +76,11 @@ public:
   /// of those at the same distance). At least one triangle.
   void findNearest(const PointRows& points, float* squares, int* triangles) const;
 
+  /// Mark the points that lie over or under a triangle and whose height there has a square of at
+  /// most `enough`: they surely have such a triangle near. Less work than findNearest().
+  /// @param[out] marks 1 or 0 for each point
+  void markNear(const PointRows& points, float enough, int* marks) const;
+
 private:
   using Row = float[kMaximumPatchCells];
 
@@ -96,8 +101,7 @@ private:
 };
 
 /// The point nearest to a place; of points at the same distance the first.
-/// @param[out] squares of the distances of all points
-int nearestPoint(const PointRows& points, float x, float y, float z, float* squares);
+int nearestPoint(const PointRows& points, float x, float y, float z);
 
 /// Coordinates of points along two axes.
 void project(const PointRows& points, const Vector& axisX, const Vector& axisY, float* x, float* y);

@@ -320,6 +320,7 @@ TEST_F(TriangleDistance, Needles)
 TEST_F(TriangleDistance, OfSeveralTrianglesIsThatOfTheNearest)
 {
   DistanceTriangles several;
+  int marked = 0;
   for (int round = 0; round < 60; ++round)
   {
     const int size = 3 + round % 14;
@@ -362,7 +363,34 @@ TEST_F(TriangleDistance, OfSeveralTrianglesIsThatOfTheNearest)
     several.findNearest(rows, squares.data(), triangles.data());
     EXPECT_EQ(squares, expected) << size;
     EXPECT_EQ(triangles, expectedTriangles) << size;
+    // What is marked is near; what is not is not over any triangle, or too high.
+    const float enough = 0.5F;
+    several.markNear(rows, enough, triangles.data());
+    for (int i = 0; i < rows.size; ++i)
+    {
+      bool over = false;
+      for (int t = 0; t < filling.count; ++t)
+      {
+        const auto& corners = filling.triangles[t];
+        const Vector& a = ring[corners[0]];
+        const Vector normal = cross(ring[corners[1]] - a, ring[corners[2]] - a);
+        const Vector p{ rows.x[i], rows.y[i], rows.z[i] };
+        const double height = dot(normal, p - a) / std::sqrt(dot(normal, normal));
+        double least = HUGE_VAL;
+        for (int c = 0; c < 3; ++c)
+        {
+          const Vector& from = ring[corners[c]];
+          const Vector inwards = cross(normal, ring[corners[nextCorner(c)]] - from);
+          least = std::min(least, dot(inwards, p - from) / std::sqrt(dot(inwards, inwards)));
+        }
+        over = over || (least > 1e-4 && height * height < enough - 1e-4);
+      }
+      marked += triangles[i];
+      EXPECT_LE(triangles[i] * expected[i], enough + 1e-4F);
+      EXPECT_GE(triangles[i], over ? 1 : 0);
+    }
   }
+  EXPECT_GT(marked, 50);
 }
 
 TEST_F(TriangleDistance, NearestPointIsTheFirstOfEquals)
@@ -375,12 +403,9 @@ TEST_F(TriangleDistance, NearestPointIsTheFirstOfEquals)
       points.add(any(1.0));
     }
     const PointRows rows = points.rows();
-    std::vector<float> squares(rows.size);
     for (int i = 0; i < count; ++i)
     {
-      const int found = nearestPoint(rows, rows.x[i], rows.y[i], rows.z[i], squares.data());
-      EXPECT_EQ(found, i);
-      EXPECT_EQ(squares[i], 0.0F);
+      EXPECT_EQ(nearestPoint(rows, rows.x[i], rows.y[i], rows.z[i]), i);
     }
     Points twice;
     for (int i = 0; i < 2 * count; ++i)
@@ -388,8 +413,7 @@ TEST_F(TriangleDistance, NearestPointIsTheFirstOfEquals)
       twice.add(points.points()[i % count]);
     }
     const PointRows all = twice.rows();
-    squares.resize(all.size);
-    EXPECT_EQ(nearestPoint(all, all.x[count], all.y[count], all.z[count], squares.data()), 0);
+    EXPECT_EQ(nearestPoint(all, all.x[count], all.y[count], all.z[count]), 0);
   }
 }
 
