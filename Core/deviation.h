@@ -31,8 +31,8 @@
 /// area, that of arrays times the area itself, for the sake of the mean error (deviation.md); a
 /// shape weight makes holes that leave bad triangles wait.
 ///
-/// Samples are relative to the removed node and in single precision; orientation is decided in
-/// double precision.
+/// Samples are relative to the removed node and in single precision, and so is the choice among
+/// triangulations; what is about to be made is judged in double precision once more.
 
 #ifndef UNDECIMATE_CORE_DEVIATION_H
 #define UNDECIMATE_CORE_DEVIATION_H

@@ -56,7 +56,7 @@ void DeviationCriterion::Internals::judgeAll(const Hole& hole)
 {
   HoleCandidates& all = this->candidates;
   all.place(this->ring.data(), hole.size, hole.boundary);
-  all.judge(this->ringNormals.data(), this->oldNormals.data(), this->normal, this->heightField);
+  all.judge(this->ringNormals.data(), this->normal, this->heightField);
   if (!this->useArrays)
   {
     all.findCrossings(this->normal);
@@ -223,8 +223,12 @@ const float* DeviationCriterion::Internals::chunkErrors(
 bool DeviationCriterion::Internals::liesOn(const Hole& hole, int triangle) const
 {
   const auto place = [&](Index node) { return this->topology.node(node).position; };
+  // Above 0 it does not matter which.
   const auto cosine = [](const Vector& a, const Vector& b)
-  { return dot(a, b) / std::sqrt(dot(a, a) * dot(b, b)); };
+  {
+    const double product = dot(a, b);
+    return product < 0.0 ? product / std::sqrt(dot(a, a) * dot(b, b)) : 0.0;
+  };
   const auto normalOf = [&](const Triple& t)
   {
     const Vector& a = this->ring[t[0]];
@@ -320,18 +324,21 @@ bool DeviationCriterion::Internals::facesAway(const Hole& hole, const Triple& t)
 }
 
 // Refuse the triangles of the best filling of a small hole that would lie on a neighbour or point
-// away from the original surface; true if there were any.
+// away from the original surface, or that double precision rules out; true if there were any.
 bool DeviationCriterion::Internals::refuseFolded(const Hole& hole)
 {
   bool any = false;
+  const bool small = hole.size <= kMaximumCompared;
   for (int t = 0; t < this->best.filling.count; ++t)
   {
-    if (this->liesOn(hole, t) || this->facesAway(hole, this->best.filling.triangles[t]))
+    const Triple& triangle = this->best.filling.triangles[t];
+    if ((small && !this->judge(hole, triangle).valid) || this->liesOn(hole, t) ||
+      this->facesAway(hole, triangle))
     {
       any = true;
-      if (hole.size <= kMaximumCompared)
+      if (small)
       {
-        Triple sorted = this->best.filling.triangles[t];
+        Triple sorted = triangle;
         std::sort(sorted.begin(), sorted.end());
         this->refused.push_back(sorted);
       }

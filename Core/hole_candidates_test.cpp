@@ -59,7 +59,7 @@ struct TestHole
   void begin(HoleCandidates& candidates, const HeightFieldDirection& heightField) const
   {
     candidates.place(this->ring.data(), this->size(), this->boundary);
-    candidates.judge(this->ringNormals.data(), this->oldNormals.data(), this->normal, heightField);
+    candidates.judge(this->ringNormals.data(), this->normal, heightField);
     candidates.findCrossings(this->normal);
   }
 
@@ -184,10 +184,12 @@ TEST_F(HoleCandidatesTest, JudgesTrianglesAsOneByOne)
             const FilledTriangle one(hole.ring[t[0]], hole.ring[t[1]], hole.ring[t[2]]);
             if (expected)
             {
-              EXPECT_EQ(candidates->shape(t), one.shape());
+              // Rounding turns needles most.
+              const double rounding = 1e-6 / one.shape();
+              EXPECT_NEAR(candidates->shape(t), one.shape(), 1e-6);
               const Vector difference = candidates->normal(t) - one.normal();
-              EXPECT_LE(dot(difference, difference), 1e-13);
-              EXPECT_NEAR(candidates->offset(t), dot(one.normal(), hole.ring[t[0]]), 1e-6);
+              EXPECT_LE(dot(difference, difference), rounding * rounding);
+              EXPECT_NEAR(candidates->offset(t), dot(one.normal(), hole.ring[t[0]]), rounding);
             }
           });
       });
@@ -207,7 +209,8 @@ TEST_F(HoleCandidatesTest, FindsCrossingsAsOneByOne)
         for (int i = 0; i < j; ++i)
         {
           const double expected = hole.crossing(i, j);
-          EXPECT_NEAR(candidates->crossing(i, j), expected, 1e-6 * expected) << i << " " << j;
+          EXPECT_NEAR(candidates->crossing(i, j), expected, 2e-6 * std::sqrt(expected))
+            << i << " " << j;
         }
       }
     });
