@@ -41,31 +41,30 @@ public:
     , nodeCount_(topology.nodeCount())
     , trianglesLeft_(topology.triangleCount())
     , nodesLeft_(this->nodeCount_)
-    , step_(options)
+    , writer_(stepWriterFor(options))
+    , removed_(topology)
   {
   }
 
   Status run(HashQueueDecimationResult& result)
   {
     const Index planned = std::max<Index>(1, this->trianglesLeft_ - this->goal_.triangles);
-    RecordBuilder builder(this->nodeCount_, this->trianglesLeft_, this->options_.trackCellSources,
-      this->goal_.plannedSteps(this->nodesLeft_, this->trianglesLeft_));
     // Step 1: evaluate all nodes and arrange them in the hash table.
-    std::vector<float> costs;
-    if (!this->evaluateAll(costs))
+    CostRange range;
+    if (!this->evaluateAll(range))
     {
       return Status::Cancelled;
     }
-    const Intervals intervals(this->options_, costs);
+    const Intervals intervals(this->options_, range);
     Queue queue({ &this->topology_ }, intervals.count());
     for (Index node = 0; node < this->nodeCount_; ++node)
     {
-      if (costs[node] >= 0.0F)
+      const float cost = firstCost(this->topology_.node(node));
+      if (cost >= 0.0F)
       {
-        queue.insert(node, intervals.of(costs[node]));
+        queue.insert(node, intervals.of(cost));
       }
     }
-    release(costs);
 
     result.stopReason = StopReason::NoRemovableNode;
     bool tooCostly = false;
@@ -97,20 +96,19 @@ public:
       {
         continue;
       }
-      this->remove(builder);
+      this->remove();
       // Step 6: re-evaluate the neighbours; they go to the end of their interval's queue.
       this->reevaluate(queue, intervals, interval);
       // Step 7: back to step 2.
     }
-    result.error = builder.error();
-    this->topology_.freeNodes();
-    result.record = builder.finish(
-      [this](Index triangle, Index* corners)
-      {
-        const auto& nodes = this->topology_.triangle(triangle).nodes;
-        std::copy(nodes.begin(), nodes.end(), corners);
-      },
-      result.baseTriangles);
+    if constexpr (kIsQuadric)
+    {
+      this->criterion_.release();
+    }
+    std::vector<Index> removed = this->removed_.nodes();
+    result.record =
+      recordOf(this->topology_, removed, this->options_.trackCellSources, result.baseTriangles);
+    result.error = result.record.stepErrors.empty() ? 0.0 : result.record.stepErrors.front();
     return this->monitor_.update(1.0) ? Status::Ok : Status::Cancelled;
   }
 
@@ -127,20 +125,15 @@ private:
   // Share of the progress that the first evaluation gets.
   static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
 
-  bool evaluateAll(std::vector<float>& costs)
+  bool evaluateAll(CostRange& range)
   {
-    costs.assign(this->nodeCount_, -1.0F);
     for (Index node = 0; node < this->nodeCount_; ++node)
     {
       if ((node & 1023) == 0 && !this->monitor_.update(kEvaluationShare * node / this->nodeCount_))
       {
         return false;
       }
-      double cost = 0.0;
-      if (!this->topology_.node(node).kept && this->criterion_.evaluate(node, cost))
-      {
-        costs[node] = static_cast<float>(cost);
-      }
+      evaluateFirst(this->topology_, this->criterion_, node, range);
     }
     return true;
   }
@@ -185,13 +178,15 @@ private:
     }
   }
 
-  void remove(RecordBuilder& builder)
+  void remove()
   {
     const Hole& hole = this->removal_.hole;
     const HoleTriangulation& filling = this->removal_.filling;
-    builder.append(this->step_.of(this->topology_, hole, filling, this->removal_.error));
     this->topology_.replace(hole, filling);
     this->criterion_.removed(hole, filling);
+    const double error = errorInUnit(this->options_, this->removal_.error);
+    this->writer_.write(this->topology_, hole, filling, error);
+    this->removed_.append(hole.node);
     this->trianglesLeft_ -= hole.triangleCount - filling.count;
     --this->nodesLeft_;
   }
@@ -242,7 +237,8 @@ private:
   Index trianglesLeft_;
   Index nodesLeft_;
   Removal removal_;
-  RecordedStep step_;
+  StepWriter writer_;
+  RemovalChain removed_;
 };
 
 Outcome checkArrays(const HashQueueDecimationOptions& options)

@@ -122,8 +122,8 @@ struct HashQueueDecimationResult
 /// @param monitor progress and cancel
 /// @param[out] result complete on Ok, empty otherwise
 /// Complexity: O(nodes); Deviation O(nodes log(nodes / nodes left)).
-/// Memory: bytes a node at the largest moment, the result included: 185 with the means, 218 with
-/// Quadric, 230 with Deviation, and 20 to 50 more with `parallel` (memory.md).
+/// Memory: bytes a node at the largest moment, the result included: 160 with the means, 165 with
+/// Quadric, 215 with Deviation, and 4 to 18 more with `parallel` (memory.md).
 /// Threads: the monitor is asked in the caller's thread only.
 /// Throws nothing: exceptions of the monitor's callback end the call as Cancelled.
 Outcome decimate(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,

@@ -214,6 +214,14 @@ void MeshParts::cut(int round, Index partNodes)
   this->parts_.swap(parts);
 }
 
+void MeshParts::release()
+{
+  undecimate::release(this->nodes_);
+  undecimate::release(this->spare_);
+  undecimate::release(this->places_);
+  undecimate::release(this->partOf_);
+}
+
 void MeshParts::join()
 {
   Index end = 0;

@@ -54,6 +54,9 @@ public:
     this->parts_[part].end = static_cast<Index>(end - this->nodes_.data());
   }
 
+  /// Give the memory back. Nothing may be called any more.
+  void release();
+
   /// Whether a node is in a part.
   bool has(Index part, Index node) const
   {

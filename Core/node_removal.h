@@ -7,10 +7,9 @@
 #ifndef UNDECIMATE_CORE_NODE_REMOVAL_H
 #define UNDECIMATE_CORE_NODE_REMOVAL_H
 
-#include "cell_sources.h"
 #include "hash_queue.h"
 #include "hash_queue_decimation.h"
-#include "record.h"
+#include "removal_steps.h"
 #include "triangle_topology.h"
 
 #include <algorithm>
@@ -25,11 +24,34 @@ namespace undecimate
 
 constexpr double kRightAngle = 90.0;
 
+constexpr float kNoCost = -1.0F; ///< of a node that is kept or cannot be evaluated
+
+/// The first costs of all nodes to be queued.
+struct CostRange
+{
+  float smallest = std::numeric_limits<float>::max();
+  float largest = 0.0F;
+  std::int64_t count = 0;
+
+  void add(float cost)
+  {
+    this->smallest = std::min(this->smallest, cost);
+    this->largest = std::max(this->largest, cost);
+    ++this->count;
+  }
+  void add(const CostRange& other)
+  {
+    this->smallest = std::min(this->smallest, other.smallest);
+    this->largest = std::max(this->largest, other.largest);
+    this->count += other.count;
+  }
+};
+
 /// Intervals of either spacing.
 class Intervals
 {
 public:
-  Intervals(const HashQueueDecimationOptions& options, const std::vector<float>& costs)
+  Intervals(const HashQueueDecimationOptions& options, const CostRange& costs)
     : logarithmic_(options.intervalSpacing == IntervalSpacing::Logarithmic)
     , exponential_(0.0, 0.0, 1)
   {
@@ -37,22 +59,10 @@ public:
     {
       return;
     }
-    float smallest = std::numeric_limits<float>::max();
-    float largest = 0.0F;
-    std::int64_t queued = 0;
-    for (const float cost : costs)
-    {
-      if (cost >= 0.0F)
-      {
-        smallest = std::min(smallest, cost);
-        largest = std::max(largest, cost);
-        ++queued;
-      }
-    }
     // [K03] eq. 1: m = floor(n / k).
-    const double count = std::floor(static_cast<double>(queued) / options.intervalNodes);
-    this->exponential_ = ExponentialIntervals(std::min(smallest, largest), largest,
-      static_cast<Index>(std::clamp(count, 1.0, static_cast<double>(1 << 24))));
+    const double count = std::floor(static_cast<double>(costs.count) / options.intervalNodes);
+    this->exponential_ = ExponentialIntervals(std::min(costs.smallest, costs.largest),
+      costs.largest, static_cast<Index>(std::clamp(count, 1.0, static_cast<double>(1 << 24))));
   }
 
   Index count() const
@@ -122,59 +132,17 @@ struct Goal
   }
 };
 
-/// Writes removals as steps of the record.
-class RecordedStep
+/// The error of a step in the unit of the criterion.
+inline double errorInUnit(const HashQueueDecimationOptions& options, double error)
 {
-public:
-  explicit RecordedStep(const HashQueueDecimationOptions& options)
-    : options_(options)
-  {
-  }
+  return options.criterion == Criterion::AngleToXYPlane ? kRightAngle * error : error;
+}
 
-  /// The removal of a hole's node, before the topology has it. Valid until the next call.
-  const RecordBuilder::Step& of(const TriangleTopology& topology, const Hole& hole,
-    const HoleTriangulation& filling, double error)
-  {
-    for (int i = 0; i < hole.triangleCount; ++i)
-    {
-      this->slots_[i] = triangleOf(hole.corners[i]);
-      const int corner = cornerOf(hole.corners[i]);
-      unsigned char* cell = this->oldCells_.data() + 3 * i;
-      cell[corner] = 0;
-      cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
-      cell[previousCorner(corner)] = static_cast<unsigned char>(i + 1 == hole.size ? 1 : i + 2);
-    }
-    const unsigned char* filled = filling.triangles.front().data();
-    for (int i = 0; i < 3 * filling.count; ++i)
-    {
-      this->newCells_[i] = static_cast<unsigned char>(filled[i] + 1);
-    }
-    if (this->options_.trackCellSources)
-    {
-      findCellSources(topology, hole, filling, this->sources_.data());
-    }
-    this->step_.node = hole.node;
-    this->step_.ring = hole.ring.data();
-    this->step_.ringSize = hole.size;
-    this->step_.oldCount = hole.triangleCount;
-    this->step_.newCount = filling.count;
-    this->step_.slots = this->slots_.data();
-    this->step_.oldCells = this->oldCells_.data();
-    this->step_.newCells = this->newCells_.data();
-    this->step_.sources = this->sources_.data();
-    this->step_.error =
-      this->options_.criterion == Criterion::AngleToXYPlane ? kRightAngle * error : error;
-    return this->step_;
-  }
-
-private:
-  const HashQueueDecimationOptions& options_;
-  RecordBuilder::Step step_;
-  std::array<unsigned char, kMaximumPatchCells> sources_;
-  std::array<Index, kMaximumPatchCells> slots_;
-  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
-  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
-};
+/// For a decimation by `options`. Deviation measures removed nodes.
+inline StepWriter stepWriterFor(const HashQueueDecimationOptions& options)
+{
+  return StepWriter(options.trackCellSources, options.criterion == Criterion::Deviation);
+}
 
 /// A node that may go, and how.
 struct Removal
@@ -184,6 +152,21 @@ struct Removal
   double cost = 0.0;
   double error = 0.0;
 };
+
+/// The first cost of a node, as far as it can go at all, and its place in the range.
+template <typename CriterionType>
+void evaluateFirst(
+  TriangleTopology& topology, CriterionType& criterion, Index node, CostRange& range)
+{
+  double cost = 0.0;
+  float first = kNoCost;
+  if (!topology.node(node).kept && criterion.evaluate(node, cost))
+  {
+    first = static_cast<float>(cost);
+    range.add(first);
+  }
+  setFirstCost(topology.node(node), first);
+}
 
 /// What is to become of the node that a queue has handed out.
 enum class Verdict

@@ -59,8 +59,8 @@ public:
 
   Status run(HashQueueDecimationResult& result)
   {
-    RecordBuilder builder(this->nodesLeft_, this->trianglesLeft_, this->options_.trackCellSources,
-      this->goal_.plannedSteps(this->nodesLeft_, this->trianglesLeft_));
+    this->removed_.reserve(
+      static_cast<std::size_t>(this->goal_.plannedSteps(this->nodesLeft_, this->trianglesLeft_)));
     MeshParts parts(this->topology_, this->threads_);
     if (!this->evaluateAll(parts))
     {
@@ -82,9 +82,9 @@ public:
       }
       if (alone)
       {
-        merge(done, builder);
+        this->merge(done);
         parts.join();
-        if (!this->removeAlone(parts, builder, result.stopReason))
+        if (!this->removeAlone(parts, result.stopReason))
         {
           return Status::Cancelled;
         }
@@ -95,7 +95,7 @@ public:
       const double below =
         std::min(kRoundShare * candidates, std::max(kOvershoot * needed / yield, 1.0));
       limit = std::max(limit, this->costOf(below));
-      if (!this->removeInParts(parts, limit, builder, done))
+      if (!this->removeInParts(parts, limit, done))
       {
         return Status::Cancelled;
       }
@@ -104,9 +104,9 @@ public:
       Index moved = 0;
       for (const Part& part : done)
       {
-        removed += part.steps.left();
+        removed += part.left();
         cellsGone += part.cellsGone;
-        moved += part.steps.left() + part.raised;
+        moved += part.left() + part.raised;
       }
       yield = std::clamp(removed / below, 0.1, 1.0);
       stuck = moved < candidates / kFewMoved;
@@ -118,12 +118,12 @@ public:
       this->nodesLeft_ -= removed;
       this->trianglesLeft_ -= cellsGone;
     }
-    merge(done, builder,
-      [&](const RecordSteps& steps)
+    this->merge(done,
+      [&](Index node)
       {
         const bool more = !this->isAtGoal(result.stopReason);
         this->nodesLeft_ -= more ? 1 : 0;
-        this->trianglesLeft_ -= more ? steps.nextCellsGone() : 0;
+        this->trianglesLeft_ -= more ? cellsGone(this->topology_.node(node)) : 0;
         return more;
       });
     this->undoRest(done);
@@ -132,17 +132,11 @@ public:
       result.stopReason = StopReason::MaximumError;
     }
     release(done);
-    result.error = builder.error();
-    this->workers_.clear();
     release(this->places_);
-    this->topology_.freeNodes();
-    result.record = builder.finish(
-      [this](Index triangle, Index* corners)
-      {
-        const auto& nodes = this->topology_.triangle(triangle).nodes;
-        std::copy(nodes.begin(), nodes.end(), corners);
-      },
+    parts.release();
+    result.record = recordOf(this->topology_, this->removed_, this->options_.trackCellSources,
       result.baseTriangles, &this->threads_);
+    result.error = result.record.stepErrors.empty() ? 0.0 : result.record.stepErrors.front();
     return this->monitor_.update(1.0) ? Status::Ok : Status::Cancelled;
   }
 
@@ -190,11 +184,11 @@ private:
     std::vector<Index> counts; // of candidates by interval, over the parts it has done
     std::vector<Index> nodes;  // to be queued
     Removal removal;
-    RecordedStep step;
+    StepWriter writer;
 
     Worker(CriterionType criterion_, const HashQueueDecimationOptions& options)
       : criterion(std::move(criterion_))
-      , step(options)
+      , writer(stepWriterFor(options))
     {
     }
   };
@@ -202,10 +196,17 @@ private:
   // What a part has done in a round.
   struct Part
   {
-    RecordSteps steps;
-    std::vector<Index> costs; // interval of the largest cost up to each step
-    Index raised = 0;         // nodes that were found to cost more, or that cannot go
+    struct Step
+    {
+      Index node;
+      Index cost; // interval of the largest cost up to this step
+    };
+    std::vector<Step> steps;
+    std::size_t taken = 0; // steps that are in the record
+    Index raised = 0;      // nodes that were found to cost more, or that cannot go
     Index cellsGone = 0;
+
+    Index left() const { return static_cast<Index>(this->steps.size() - this->taken); }
   };
 
   bool isAtGoal(StopReason& reason) const
@@ -227,8 +228,8 @@ private:
 
   bool evaluateAll(MeshParts& parts)
   {
-    std::vector<float> costs(this->topology_.nodeCount(), -1.0F);
     this->places_.assign(this->topology_.nodeCount(), kNone);
+    std::vector<CostRange> ranges(this->workers_.size());
     std::atomic<Index> done{ 0 };
     this->threads_.run(parts.count(),
       [&](Index part, int thread)
@@ -241,12 +242,7 @@ private:
           {
             return;
           }
-          double cost = 0.0;
-          if (!this->topology_.node(*node).kept &&
-            this->workers_[thread]->criterion.evaluate(*node, cost))
-          {
-            costs[*node] = static_cast<float>(cost);
-          }
+          evaluateFirst(this->topology_, this->workers_[thread]->criterion, *node, ranges[thread]);
         }
         done += count;
       });
@@ -254,7 +250,11 @@ private:
     {
       return false;
     }
-    this->intervals_ = std::make_unique<Intervals>(this->options_, costs);
+    for (std::size_t i = 1; i < ranges.size(); ++i)
+    {
+      ranges.front().add(ranges[i]);
+    }
+    this->intervals_ = std::make_unique<Intervals>(this->options_, ranges.front());
     for (auto& worker : this->workers_)
     {
       worker->queue =
@@ -266,9 +266,10 @@ private:
       {
         for (const Index* node = parts.begin(part); node != parts.end(part); ++node)
         {
-          if (costs[*node] >= 0.0F)
+          const float cost = firstCost(this->topology_.node(*node));
+          if (cost >= 0.0F)
           {
-            const Index interval = this->intervals_->of(costs[*node]);
+            const Index interval = this->intervals_->of(cost);
             this->places_[*node] = interval;
             ++this->workers_[thread]->counts[interval];
           }
@@ -310,23 +311,18 @@ private:
 
   // A round. The steps of the round before are taken over into the record meanwhile, and `done` has
   // those of this one afterwards.
-  bool removeInParts(MeshParts& parts, Index limit, RecordBuilder& builder, std::vector<Part>& done)
+  bool removeInParts(MeshParts& parts, Index limit, std::vector<Part>& done)
   {
     std::vector<Index>& counts = this->workers_.front()->counts;
     std::fill(counts.begin(), counts.end(), 0);
-    std::vector<Part> now;
-    now.reserve(parts.count());
-    for (Index part = 0; part < parts.count(); ++part)
-    {
-      now.push_back({ RecordSteps(this->options_.trackCellSources), {} });
-    }
+    std::vector<Part> now(parts.count());
     std::atomic<Index> gone{ 0 };
     this->threads_.run(parts.count() + 1,
       [&](Index job, int thread)
       {
         if (job == 0)
         {
-          merge(done, builder);
+          this->merge(done);
           release(done);
           return;
         }
@@ -340,16 +336,15 @@ private:
           parts, part, worker, limit,
           [&](std::uint64_t turn)
           {
-            return here.steps.left() < most &&
+            return here.left() < most &&
               ((turn & 255) != 0 ||
                 this->mayGoOn(thread, this->fractionDone(gone + here.cellsGone)));
           },
-          [&](const RecordBuilder::Step& step, Index interval)
+          [&](const Hole& hole, const HoleTriangulation& filling, Index interval)
           {
-            here.steps.append(step);
-            here.costs.push_back(
-              here.costs.empty() ? interval : std::max(here.costs.back(), interval));
-            here.cellsGone += step.oldCount - step.newCount;
+            here.steps.push_back({ hole.node,
+              here.steps.empty() ? interval : std::max(here.steps.back().cost, interval) });
+            here.cellsGone += hole.triangleCount - filling.count;
           });
         gone += here.cellsGone;
         this->count(parts, part, worker);
@@ -359,7 +354,7 @@ private:
   }
 
   // As the serial algorithm: all nodes, whatever they cost, to the goal.
-  bool removeAlone(MeshParts& parts, RecordBuilder& builder, StopReason& reason)
+  bool removeAlone(MeshParts& parts, StopReason& reason)
   {
     Worker& worker = *this->workers_.front();
     worker.criterion.setTrianglesLeft(this->trianglesLeft_);
@@ -372,11 +367,11 @@ private:
         return !this->isAtGoal(reason) &&
           ((turn & 255) != 0 || this->mayGoOn(0, this->fractionDone(0)));
       },
-      [&](const RecordBuilder::Step& step, Index /*interval*/)
+      [&](const Hole& hole, const HoleTriangulation& filling, Index /*interval*/)
       {
-        builder.append(step);
+        this->removed_.push_back(hole.node);
         --this->nodesLeft_;
-        this->trianglesLeft_ -= step.oldCount - step.newCount;
+        this->trianglesLeft_ -= hole.triangleCount - filling.count;
       });
     return !this->monitor_.cancelled();
   }
@@ -459,10 +454,11 @@ private:
       }
       const Hole& hole = worker.removal.hole;
       const HoleTriangulation& filling = worker.removal.filling;
-      append(worker.step.of(this->topology_, hole, filling, worker.removal.error),
-        this->intervals_->of(worker.removal.cost));
+      append(hole, filling, this->intervals_->of(worker.removal.cost));
       this->topology_.replace(hole, filling);
       worker.criterion.removed(hole, filling);
+      worker.writer.write(
+        this->topology_, hole, filling, errorInUnit(this->options_, worker.removal.error));
       place = kGone;
       this->reevaluate(parts, part, worker, interval, limit);
     }
@@ -540,21 +536,16 @@ private:
   // one. Costs that are equal, to the width of an interval, take turns, so that they spread over
   // the mesh.
   template <typename MayTake>
-  static void merge(std::vector<Part>& parts, RecordBuilder& builder, const MayTake& mayTake)
+  void merge(std::vector<Part>& parts, const MayTake& mayTake)
   {
     constexpr int kTurn = 8;                    // steps
     using Turn = std::pair<Index, std::size_t>; // interval of the next cost, part
     std::priority_queue<Turn, std::vector<Turn>, std::greater<Turn>> turns;
-    const auto intervalOf = [&](std::size_t part)
-    {
-      const Part& here = parts[part];
-      return here.costs[here.costs.size() - static_cast<std::size_t>(here.steps.left())];
-    };
     for (std::size_t part = 0; part < parts.size(); ++part)
     {
-      if (parts[part].steps.left() > 0)
+      if (parts[part].left() > 0)
       {
-        turns.push({ intervalOf(part), part });
+        turns.push({ parts[part].steps[parts[part].taken].cost, part });
       }
     }
     std::vector<std::size_t> equals;
@@ -570,16 +561,18 @@ private:
         std::size_t stay = 0;
         for (const std::size_t part : equals)
         {
-          RecordSteps& steps = parts[part].steps;
+          Part& here = parts[part];
           Index next = interval;
           for (int i = 0; i < kTurn && next == interval; ++i)
           {
-            if (!mayTake(steps))
+            const Index node = here.steps[here.taken].node;
+            if (!mayTake(node))
             {
               return;
             }
-            builder.takeNext(steps);
-            next = steps.left() > 0 ? intervalOf(part) : kNone;
+            this->removed_.push_back(node);
+            ++here.taken;
+            next = here.left() > 0 ? here.steps[here.taken].cost : kNone;
           }
           if (next == interval)
           {
@@ -595,9 +588,9 @@ private:
     }
   }
 
-  static void merge(std::vector<Part>& parts, RecordBuilder& builder)
+  void merge(std::vector<Part>& parts)
   {
-    merge(parts, builder, [](const RecordSteps& /*steps*/) { return true; });
+    this->merge(parts, [](Index /*node*/) { return true; });
   }
 
   void undoRest(std::vector<Part>& parts)
@@ -605,8 +598,11 @@ private:
     this->threads_.run(static_cast<Index>(parts.size()),
       [&](Index part, int /*thread*/)
       {
-        parts[part].steps.undoRest(
-          [this](Index triangle) { return this->topology_.triangle(triangle).nodes.data(); });
+        const Part& here = parts[part];
+        for (std::size_t i = here.steps.size(); i > here.taken; --i)
+        {
+          undo(this->topology_, here.steps[i - 1].node);
+        }
       });
   }
 
@@ -621,6 +617,7 @@ private:
   double progress_ = 0.0;
   std::unique_ptr<Intervals> intervals_;
   std::vector<Index> places_;
+  std::vector<Index> removed_; // in the order of the record's steps
   std::vector<std::unique_ptr<Worker>> workers_;
   std::atomic<bool> tooCostly_{ false };
 };

@@ -142,7 +142,10 @@ void QuadricCriterion::addPlanes()
 
 void QuadricCriterion::findCosts()
 {
-  this->costs_.assign(this->topology_.nodeCount(), std::numeric_limits<float>::infinity());
+  for (Index i = 0; i < this->topology_.nodeCount(); ++i)
+  {
+    setFirstCost(this->topology_.node(i), std::numeric_limits<float>::infinity());
+  }
   const auto compare = [this](Index from, Index to, bool boundary, const Vector& place)
   {
     MeshNode& node = this->topology_.node(from);
@@ -155,9 +158,9 @@ void QuadricCriterion::findCosts()
     const Quadric quadric{ s.xx, s.yy, s.zz, s.xy, s.yz, s.zx };
     const double mean = dot(place, quadric.timesA(place)) * inverseWeight(quadric);
     const float square = static_cast<float>(std::max(mean, 0.0));
-    if (std::isfinite(mean) && square < this->costs_[from])
+    if (std::isfinite(mean) && square < firstCost(node))
     {
-      this->costs_[from] = square;
+      setFirstCost(node, square); // still its square
       node.value = to;
     }
   };
@@ -190,17 +193,13 @@ double QuadricCriterion::meanSquare(const Quadric& quadric, Index from, Index to
 
 bool QuadricCriterion::evaluate(Index node, double& cost) const
 {
-  cost = std::sqrt(static_cast<double>(this->costs_[node]));
+  cost = std::sqrt(static_cast<double>(firstCost(this->topology_.node(node))));
   return cost < HUGE_VAL;
 }
 
 bool QuadricCriterion::retriangulate(
   Index node, Hole& hole, HoleTriangulation& filling, double& cost)
 {
-  if (!this->costs_.empty())
-  {
-    release(this->costs_); // of the original mesh: nobody asks any more
-  }
   filling.count = 0;
   if (!this->topology_.gather(node, hole) || !this->topology_.isClosable(hole))
   {

@@ -24,7 +24,7 @@
 /// the queue that expect() gives, from nodes that are in the cache anyway: half as many evaluations
 /// as with the places before.
 ///
-/// Memory: 32 bytes a node, and 4 until the first removal.
+/// Memory: 32 bytes a node.
 
 #ifndef UNDECIMATE_CORE_QUADRIC_CRITERION_H
 #define UNDECIMATE_CORE_QUADRIC_CRITERION_H
@@ -80,7 +80,7 @@ public:
   explicit QuadricCriterion(TriangleTopology& topology);
 
   /// Cost in the original mesh, whatever may be in the way; false if the node has no neighbour to
-  /// go to. Until the first retriangulate(). O(1).
+  /// go to. Once for each node, before it is in a queue. O(1).
   bool evaluate(Index node, double& cost) const;
 
   /// Gather the hole of a node and find its least cost; false if it cannot be closed. The filling
@@ -98,6 +98,9 @@ public:
   /// What a ring node is expected to cost after the removal of the hole's node; false if nothing is
   /// known that would change it.
   bool expect(Index node, const Hole& hole, double& cost);
+
+  /// Give the memory back. Nothing may be called any more.
+  void release() { undecimate::release(this->stored_); }
 
   /// Ask for what evaluating a node reads here.
   void prefetch(Index node) const { undecimate::prefetch(&this->stored_[node]); }
@@ -129,7 +132,6 @@ private:
   HeightFieldDirection heightField_;
   double unit_ = 0.0; // 1 / diagonal
   LargeArray<Stored, 2> stored_;
-  LargeArray<float, 3> costs_;                               // squares, of the original mesh
   std::array<Candidate, kMaximumPatchCells + 1> candidates_; // of the last retriangulate()
   int candidateCount_ = 0;
   Index heir_ = kNone; // the ring node that gets the quadric

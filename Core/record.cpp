@@ -5,6 +5,7 @@
 
 #include "compiler.h"
 #include "large_array.h"
+#include "record_shapes.h"
 
 #include <algorithm>
 #include <array>
@@ -19,13 +20,6 @@ namespace undecimate
 
 namespace
 {
-
-constexpr int kTriangleCorners = 3;
-constexpr int kMostCorners = 4;
-
-// Local numbers are bytes.
-constexpr int kMaximumLocals = 256;
-static_assert(kMaximumRing < kNoLocal, "");
 
 // Whether only the last corner of a cell is empty, if any.
 template <typename Corner>
@@ -172,19 +166,6 @@ Outcome checkShape(const RecordView& record, Index shape)
     }
   }
   return {};
-}
-
-int lostSourceCount(const unsigned char* shape, int corners)
-{
-  const int oldCount = shape[0];
-  const int newCount = shape[1];
-  const unsigned char* sources = shape + 3 + corners * (oldCount + newCount);
-  std::uint64_t heirs = 0;
-  for (int i = 0; i < newCount; ++i)
-  {
-    heirs |= std::uint64_t{ 1 } << sources[i];
-  }
-  return oldCount - countBits(heirs);
 }
 
 Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
@@ -415,172 +396,6 @@ Outcome validateRecord(
   return checkSteps(record, progress.part(0.5, 1.0));
 }
 
-namespace
-{
-
-/// Finds shapes by their content: open addressing with linear probing, at most half full.
-class ShapeTable
-{
-public:
-  // Room for the longest shape, in whole words.
-  static constexpr int kCapacity = (3 + (2 * kMostCorners + 1) * kMaximumPatchCells + 7) / 8 * 8;
-  using Shape = std::array<unsigned char, kCapacity>;
-
-  /// Number of a shape, which is added to `shapes` and `shapeOffsets` of the record if it is new.
-  /// @param size its bytes; those up to the next multiple of 8 must be 0
-  template <typename Shapes>
-  Index number(const Shape& shape, int size, Shapes& record)
-  {
-    const std::uint64_t hash = hashOf(shape, size);
-    std::size_t i = hash & this->mask();
-    for (; this->entries_[i].number != kNone; i = (i + 1) & this->mask())
-    {
-      const Entry& entry = this->entries_[i];
-      // Equal counts are equal lengths, and the first bytes are the counts.
-      if (entry.hash == hash &&
-        record.shapes.size() - entry.begin >= static_cast<std::size_t>(size) &&
-        std::memcmp(record.shapes.data() + entry.begin, shape.data(), size) == 0)
-      {
-        return entry.number;
-      }
-    }
-    const Index number = static_cast<Index>(record.shapeOffsets.size()) - 1;
-    if (record.shapes.size() + size > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-    {
-      throw std::length_error("The table of shapes is too large.");
-    }
-    this->entries_[i] = { hash, record.shapeOffsets.back(), number };
-    record.shapes.insert(record.shapes.end(), shape.begin(), shape.begin() + size);
-    record.shapeOffsets.push_back(static_cast<Index>(record.shapes.size()));
-    if (2 * record.shapeOffsets.size() > this->entries_.size())
-    {
-      this->grow();
-    }
-    return number;
-  }
-
-  void clear() { release(this->entries_); }
-
-private:
-  struct Entry
-  {
-    std::uint64_t hash;
-    Index begin; // in Record::shapes
-    Index number = kNone;
-  };
-
-  static std::uint64_t hashOf(const Shape& shape, int size)
-  {
-    std::uint64_t hash = 0;
-    for (int i = 0; i < size; i += 8)
-    {
-      std::uint64_t word = 0;
-      std::memcpy(&word, shape.data() + i, sizeof(word));
-      hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
-      hash ^= hash >> 29;
-    }
-    return hash ^ hash >> 32;
-  }
-
-  std::size_t mask() const { return this->entries_.size() - 1; }
-
-  void grow()
-  {
-    std::vector<Entry> old(2 * this->entries_.size());
-    old.swap(this->entries_);
-    for (const Entry& entry : old)
-    {
-      if (entry.number != kNone)
-      {
-        std::size_t i = entry.hash & this->mask();
-        while (this->entries_[i].number != kNone)
-        {
-          i = (i + 1) & this->mask();
-        }
-        this->entries_[i] = entry;
-      }
-    }
-  }
-
-  std::vector<Entry> entries_ = std::vector<Entry>(1024);
-};
-
-void padWithZeros(ShapeTable::Shape& shape, int size)
-{
-  std::fill_n(shape.begin() + size, (8 - size % 8) % 8, static_cast<unsigned char>(0));
-}
-
-void add(std::vector<Index>& to, const Index* values, int count)
-{
-  for (int i = 0; i < count; ++i)
-  {
-    to.push_back(values[i]);
-  }
-}
-
-/// A step as the record has it: its shape, and the nodes that no new cell has.
-struct EncodedStep
-{
-  ShapeTable::Shape shape;
-  int size = 0; // of the shape
-  std::array<Index, kMaximumRing + 1> extraNodes;
-  int extra = 0;
-};
-
-// Numbering by first appearance in the new cells makes equal patches equal shapes, and leaves the
-// nodes that no new cell has with the last numbers.
-template <int Corners>
-EncodedStep encode(const RecordBuilder::Step& step, bool hasSources)
-{
-  EncodedStep encoded;
-  std::array<unsigned char, kMaximumLocals> local; // of a position in the ring; 0 = none yet
-  std::fill_n(local.begin(), step.ringSize + 1, static_cast<unsigned char>(0));
-  local[kNoLocal] = kNoLocal;
-  unsigned char locals = 0;
-  ShapeTable::Shape& shape = encoded.shape;
-  int size = 3 + Corners * (step.oldCount + step.newCount);
-  unsigned char* oldLocals = shape.data() + 3;
-  unsigned char* newLocals = oldLocals + Corners * step.oldCount;
-  for (int i = 0; i < Corners * step.newCount; ++i)
-  {
-    const int position = step.newCells[i];
-    const bool known = local[position] != 0;
-    locals = static_cast<unsigned char>(locals + (known ? 0 : 1));
-    local[position] = known ? local[position] : locals;
-    newLocals[i] = local[position];
-  }
-  // Most often all nodes of the ring are known by now.
-  if (locals < step.ringSize)
-  {
-    for (int i = 0; i < Corners * step.oldCount; ++i)
-    {
-      const int position = step.oldCells[i];
-      if (position != 0 && local[position] == 0)
-      {
-        local[position] = ++locals;
-        encoded.extraNodes[encoded.extra++] = step.ring[position - 1];
-      }
-    }
-  }
-  for (int i = 0; i < Corners * step.oldCount; ++i)
-  {
-    oldLocals[i] = local[step.oldCells[i]]; // that of the removed node stays 0
-  }
-  shape[0] = static_cast<unsigned char>(step.oldCount);
-  shape[1] = static_cast<unsigned char>(step.newCount);
-  shape[2] = static_cast<unsigned char>(encoded.extra);
-  if (hasSources)
-  {
-    std::copy_n(step.sources, step.newCount, shape.begin() + size);
-    size += step.newCount;
-  }
-  padWithZeros(shape, size);
-  encoded.size = size;
-  return encoded;
-}
-
-} // namespace
-
 // Steps in the order of removal and in original numbers; finish() reverses and renumbers.
 struct RecordBuilder::Internals
 {
@@ -653,7 +468,8 @@ void RecordBuilder::appendCells(const Step& step)
   const EncodedStep encoded = encode<Corners>(step, record.hasSources);
   if (record.hasSources)
   {
-    this->inherit(step.sources, step.oldCount, step.newCount, step.slots);
+    inheritSources(
+      step.sources, step.oldCount, step.newCount, step.slots, in.sources, record.lostSources);
   }
   record.stepShapes.push_back(in.shapeTable.number(encoded.shape, encoded.size, record));
   in.largestError = std::max(in.largestError, static_cast<float>(step.error));
@@ -662,183 +478,6 @@ void RecordBuilder::appendCells(const Step& step)
   add(record.patches, encoded.extraNodes.data(), encoded.extra);
   in.removedNodes.push_back(step.node);
   add(in.freedSlots, step.slots + step.newCount, step.oldCount - step.newCount);
-}
-
-// The new cells of a step take over the sources of old ones.
-void RecordBuilder::inherit(
-  const unsigned char* sources, int oldCount, int newCount, const Index* slots)
-{
-  Internals& in = *this->internals_;
-  std::uint64_t heirs = 0;
-  std::array<Index, kMaximumPatchCells> inherited;
-  for (int i = 0; i < newCount; ++i)
-  {
-    heirs |= std::uint64_t{ 1 } << sources[i];
-    inherited[i] = in.sources[slots[sources[i]]];
-  }
-  for (int i = 0; i < oldCount; ++i)
-  {
-    if (((heirs >> i) & 1) == 0)
-    {
-      in.record.lostSources.push_back(in.sources[slots[i]]);
-    }
-  }
-  for (int i = 0; i < newCount; ++i)
-  {
-    in.sources[slots[i]] = inherited[i];
-  }
-}
-
-struct RecordSteps::Internals
-{
-  bool hasSources = false;
-  int corners = kTriangleCorners;
-  std::vector<unsigned char> shapes;
-  std::vector<Index> shapeOffsets{ 0 };
-  ShapeTable shapeTable;
-  std::vector<Index> stepShapes;
-  std::vector<float> stepErrors;
-  std::vector<Index> removedNodes;
-  std::vector<Index> patches;    // new cells' slots and extra nodes, step after step
-  std::vector<Index> freedSlots; // step after step
-
-  // What was taken.
-  std::size_t taken = 0;
-  std::size_t patchTaken = 0;
-  std::size_t freedTaken = 0;
-  std::vector<Index> numbers; // of the shapes in the record that takes them
-
-  const unsigned char* shapeOf(std::size_t step) const
-  {
-    return this->shapes.data() + this->shapeOffsets[this->stepShapes[step]];
-  }
-};
-
-RecordSteps::RecordSteps(bool trackSources, int cornersPerCell)
-  : internals_(std::make_unique<Internals>())
-{
-  this->internals_->hasSources = trackSources;
-  this->internals_->corners = cornersPerCell;
-}
-
-RecordSteps::~RecordSteps() = default;
-RecordSteps::RecordSteps(RecordSteps&& other) noexcept = default;
-RecordSteps& RecordSteps::operator=(RecordSteps&& other) noexcept = default;
-
-void RecordSteps::append(const RecordBuilder::Step& step)
-{
-  Internals& in = *this->internals_;
-  const EncodedStep encoded = in.corners == kTriangleCorners
-    ? encode<kTriangleCorners>(step, in.hasSources)
-    : encode<kMostCorners>(step, in.hasSources);
-  in.stepShapes.push_back(in.shapeTable.number(encoded.shape, encoded.size, in));
-  const float error = static_cast<float>(step.error);
-  in.stepErrors.push_back(in.stepErrors.empty() ? error : std::max(in.stepErrors.back(), error));
-  add(in.patches, step.slots, step.newCount);
-  add(in.patches, encoded.extraNodes.data(), encoded.extra);
-  in.removedNodes.push_back(step.node);
-  add(in.freedSlots, step.slots + step.newCount, step.oldCount - step.newCount);
-}
-
-Index RecordSteps::left() const
-{
-  return static_cast<Index>(this->internals_->stepShapes.size() - this->internals_->taken);
-}
-
-int RecordSteps::nextCellsGone() const
-{
-  const unsigned char* shape = this->internals_->shapeOf(this->internals_->taken);
-  return shape[0] - shape[1];
-}
-
-void RecordBuilder::takeNext(RecordSteps& steps)
-{
-  Internals& in = *this->internals_;
-  RecordSteps::Internals& from = *steps.internals_;
-  Record& record = in.record;
-  const Index local = from.stepShapes[from.taken];
-  const unsigned char* bytes = from.shapeOf(from.taken);
-  if (from.numbers.empty())
-  {
-    from.numbers.assign(from.shapeOffsets.size() - 1, kNone);
-  }
-  Index& number = from.numbers[local];
-  if (number == kNone)
-  {
-    const int size = from.shapeOffsets[local + 1] - from.shapeOffsets[local];
-    ShapeTable::Shape shape;
-    std::copy_n(bytes, size, shape.begin());
-    padWithZeros(shape, size);
-    number = in.shapeTable.number(shape, size, record);
-  }
-  const int newCount = bytes[1];
-  const int freed = bytes[0] - newCount;
-  const Index* patch = from.patches.data() + from.patchTaken;
-  const Index* freedSlots = from.freedSlots.data() + from.freedTaken;
-  if (record.hasSources)
-  {
-    std::array<Index, kMaximumPatchCells> slots;
-    std::copy_n(freedSlots, freed, std::copy_n(patch, newCount, slots.begin()));
-    const unsigned char* sources = bytes + 3 + from.corners * (bytes[0] + newCount);
-    this->inherit(sources, bytes[0], newCount, slots.data());
-  }
-  record.stepShapes.push_back(number);
-  in.largestError = std::max(in.largestError, from.stepErrors[from.taken]);
-  record.stepErrors.push_back(in.largestError);
-  add(record.patches, patch, newCount + bytes[2]);
-  in.removedNodes.push_back(from.removedNodes[from.taken]);
-  add(in.freedSlots, freedSlots, freed);
-  ++from.taken;
-  from.patchTaken += newCount + bytes[2];
-  from.freedTaken += freed;
-}
-
-void RecordSteps::undoRest(const CornersOf& cornersOf)
-{
-  Internals& in = *this->internals_;
-  const Index* patch = in.patches.data() + in.patches.size();
-  const Index* freedSlots = in.freedSlots.data() + in.freedSlots.size();
-  for (std::size_t step = in.stepShapes.size(); step-- > in.taken;)
-  {
-    const unsigned char* shape = in.shapeOf(step);
-    const int oldCount = shape[0];
-    const int newCount = shape[1];
-    const int extra = shape[2];
-    const unsigned char* oldCells = shape + 3;
-    const unsigned char* newCells = oldCells + in.corners * oldCount;
-    patch -= newCount + extra;
-    freedSlots -= oldCount - newCount;
-    // The nodes that the local numbers stand for are read from the new cells, but for the removed
-    // one and those that no new cell has, whose numbers are the last ones.
-    std::array<Index, kMaximumLocals> nodes;
-    nodes[kNoLocal] = kNone;
-    nodes[0] = in.removedNodes[step];
-    int locals = 0;
-    for (int i = 0; i < newCount; ++i)
-    {
-      const Index* corners = cornersOf(patch[i]);
-      for (int c = 0; c < in.corners; ++c)
-      {
-        const int local = newCells[in.corners * i + c];
-        nodes[local] = corners[c];
-        locals = local == kNoLocal ? locals : std::max(locals, local);
-      }
-    }
-    std::copy_n(patch + newCount, extra, nodes.begin() + locals + 1);
-    for (int i = 0; i < oldCount; ++i)
-    {
-      Index* corners = cornersOf(i < newCount ? patch[i] : freedSlots[i - newCount]);
-      for (int c = 0; c < in.corners; ++c)
-      {
-        corners[c] = nodes[oldCells[in.corners * i + c]];
-      }
-    }
-  }
-  in.stepShapes.resize(in.taken);
-  in.stepErrors.resize(in.taken);
-  in.removedNodes.resize(in.taken);
-  in.patches.resize(in.patchTaken);
-  in.freedSlots.resize(in.freedTaken);
 }
 
 Record RecordBuilder::finish(

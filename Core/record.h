@@ -127,8 +127,6 @@ struct Record
 Outcome validateRecord(const RecordView& record, const Index* baseCells,
   const MonitorShare& progress = MonitorShare(nullptr));
 
-class RecordSteps;
-
 /// Written by a decimator, step by step, in original numbers; finish() turns it into record order.
 class RecordBuilder
 {
@@ -161,12 +159,6 @@ public:
   /// @throw std::length_error if the table of shapes would pass 2^31 - 1 bytes
   void append(const Step& step);
 
-  /// Take the next one of some steps that were written elsewhere.
-  /// @param steps with left() > 0, of the same number of corners and as these with or without
-  /// sources
-  /// @throw std::length_error as append()
-  void takeNext(RecordSteps& steps);
-
   /// Steps so far.
   Index stepCount() const;
 
@@ -186,39 +178,7 @@ public:
 private:
   template <int Corners>
   void appendCells(const Step& step);
-  void inherit(const unsigned char* sources, int oldCount, int newCount, const Index* slots);
 
-  struct Internals;
-  std::unique_ptr<Internals> internals_;
-};
-
-/// Steps in a part of a mesh, as compact as in a record: written by one thread, to be taken over by
-/// a RecordBuilder in the order in which they were made, with those of other parts in between.
-class RecordSteps
-{
-public:
-  /// As RecordBuilder().
-  explicit RecordSteps(bool trackSources, int cornersPerCell = 3);
-  ~RecordSteps();
-  RecordSteps(RecordSteps&& other) noexcept;
-  RecordSteps& operator=(RecordSteps&& other) noexcept;
-
-  /// As RecordBuilder::append().
-  void append(const RecordBuilder::Step& step);
-
-  /// Steps that were not taken yet.
-  Index left() const;
-
-  /// Cells that the next step takes away; left() > 0.
-  int nextCellsGone() const;
-
-  /// Undo the steps that are left, the last one first.
-  /// @param cornersOf the corners of a cell in the caller's memory, to be read and written
-  using CornersOf = std::function<Index*(Index cell)>;
-  void undoRest(const CornersOf& cornersOf);
-
-private:
-  friend class RecordBuilder;
   struct Internals;
   std::unique_ptr<Internals> internals_;
 };

@@ -16,6 +16,7 @@
 #include "vector.h"
 
 #include <array>
+#include <cstring>
 #include <vector>
 
 namespace undecimate
@@ -84,18 +85,32 @@ enum class NodeKind : unsigned char
 
 /// All that is known about a node: one cache line, since the nodes are visited in an order that
 /// memory does not know. Besides the topology's own part there is room for those who work on it.
+/// Of a removed node only `kind` is still needed here.
 struct alignas(64) MeshNode
 {
-  std::uint64_t neighbours = 0; ///< topology: see TriangleTopology::mayHaveEdge()
-  Corner corner = kNoCorner;    ///< topology: of one of its triangles
   NodeKind kind = NodeKind::Unused;
-  bool kept = false;      ///< free for the user: is never removed
-  QueueLinks links;       ///< free for the user: its place in a hash queue
-  std::int32_t value = 0; ///< free for the user
-  std::uint64_t sum = 0;  ///< free for the user
-  Vector position;        ///< undefined if the topology was made without positions
+  bool kept = false;            ///< free for the user: is never removed
+  std::int32_t value = 0;       ///< free for the user
+  Vector position;              ///< undefined if the topology was made without positions
+  std::uint64_t neighbours = 0; ///< topology: see TriangleTopology::mayHaveEdge()
+  std::uint64_t sum = 0;        ///< free for the user
+  QueueLinks links;             ///< free for the user: its place in a hash queue
+  Corner corner = kNoCorner;    ///< topology: of one of its triangles
 };
 static_assert(sizeof(MeshNode) == 64, "a cache line");
+
+/// The first cost of a node waits where its place in the queue will be: the node is in none yet.
+inline void setFirstCost(MeshNode& node, float cost)
+{
+  static_assert(sizeof(cost) == sizeof(node.links.next), "");
+  std::memcpy(&node.links.next, &cost, sizeof(cost));
+}
+inline float firstCost(const MeshNode& node)
+{
+  float cost = 0.0F;
+  std::memcpy(&cost, &node.links.next, sizeof(cost));
+  return cost;
+}
 
 /// Triangles with their neighbours across each edge (a corner table), and one corner for each node.
 ///
@@ -237,8 +252,9 @@ public:
   /// triangle i. The other slots are free afterwards.
   void replace(const Hole& hole, const HoleTriangulation& filling);
 
-  /// Free the memory of the nodes. Nothing but triangle() may be used any more.
+  /// Free the memory of the nodes, or of the triangles. Only the others may be used any more.
   void freeNodes() { release(this->nodes_); }
+  void freeTriangles() { release(this->triangles_); }
 
 private:
   // All nodes that ever shared an edge with a node, as bits: most pairs without an edge are told by

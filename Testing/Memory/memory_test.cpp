@@ -216,12 +216,12 @@ void measureOverTime(
 int main(int argc, char* argv[])
 {
   const Grid grid(argc > 1 ? std::atoi(argv[1]) : 200);
-  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Plain, 215);
-  measure(grid, "Quadric", Criterion::Quadric, Way::Plain, 245);
-  measure(grid, "Deviation", Criterion::Deviation, Way::Plain, 245);
-  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::WithSources, 235);
-  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Parallel, 255);
-  measure(grid, "Deviation", Criterion::Deviation, Way::Parallel, 295);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Plain, 160);
+  measure(grid, "Quadric", Criterion::Quadric, Way::Plain, 170);
+  measure(grid, "Deviation", Criterion::Deviation, Way::Plain, 230);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::WithSources, 165);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Parallel, 172);
+  measure(grid, "Deviation", Criterion::Deviation, Way::Parallel, 250);
   measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 3, 420);
   measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 25, 1850);
   measureOverTime(grid, "Quadrics", TriQuadCriterion::Quadrics, 25, 1700);

@@ -1,0 +1,654 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "removal_steps.h"
+
+#include "cell_sources.h"
+#include "large_array.h"
+#include "record_shapes.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <numeric>
+#include <type_traits>
+
+namespace undecimate
+{
+
+namespace
+{
+
+// What is in a removed node, in bytes from its begin:
+//   0        kind
+//   4 or 32  up to kHeader: the step's parts, at the end of this room; or, at its end, where they
+//            are, if they do not fit
+//   kHeader  counts and what else all steps have
+// The parts are the corners of the node in the old triangles, the ears of the filling, the sources
+// of the new triangles if they are tracked, and the ring of a hole that is not filled.
+static_assert(std::is_trivially_copyable_v<MeshNode>, "a node is bytes here");
+static_assert(offsetof(MeshNode, kind) == 0 && sizeof(NodeKind) == 1, "see above");
+constexpr std::size_t kBegin = offsetof(MeshNode, value);
+constexpr std::size_t kBeginBehindPosition = offsetof(MeshNode, neighbours);
+static_assert(kBegin >= sizeof(NodeKind) && offsetof(MeshNode, position) >= kBegin, "see above");
+static_assert(
+  offsetof(MeshNode, position) + sizeof(Vector) <= kBeginBehindPosition, "the position stays");
+
+struct Header
+{
+  unsigned char oldCount;
+  bool boundary;
+  bool elsewhere; // the parts
+  bool hasSources;
+  float error;
+  Index later; // see RemovalChain
+};
+constexpr std::size_t kHeader = sizeof(MeshNode) - sizeof(Header);
+
+unsigned char* bytesOf(MeshNode& node)
+{
+  return reinterpret_cast<unsigned char*>(&node);
+}
+const unsigned char* bytesOf(const MeshNode& node)
+{
+  return reinterpret_cast<const unsigned char*>(&node);
+}
+
+Header headerOf(const MeshNode& node)
+{
+  Header header;
+  std::memcpy(&header, bytesOf(node) + kHeader, sizeof(header));
+  return header;
+}
+
+void setHeader(MeshNode& node, const Header& header)
+{
+  std::memcpy(bytesOf(node) + kHeader, &header, sizeof(header));
+}
+
+int newCountOf(const Header& header)
+{
+  return header.boundary ? header.oldCount - 1 : header.oldCount - 2;
+}
+
+int ringSizeOf(const Header& header)
+{
+  return header.boundary ? header.oldCount + 1 : header.oldCount;
+}
+
+std::size_t partsSize(int oldCount, int newCount, bool hasSources)
+{
+  return sizeof(Corner) * oldCount + (hasSources ? 2 : 1) * newCount +
+    (newCount == 0 ? 2 * sizeof(Index) : 0);
+}
+
+// A step as it is read.
+struct Step
+{
+  Header header;
+  int oldCount;
+  int newCount;
+  int ringSize;
+  std::array<Corner, kMaximumPatchCells> corners; // of the node in the old triangles
+  const unsigned char* ears;
+  const unsigned char* sources;
+  std::array<Index, 2> ring; // of a hole that is not filled
+
+  explicit Step(const MeshNode& node)
+    : header(headerOf(node))
+    , oldCount(this->header.oldCount)
+    , newCount(newCountOf(this->header))
+    , ringSize(ringSizeOf(this->header))
+  {
+    const std::size_t size = partsSize(this->oldCount, this->newCount, this->header.hasSources);
+    const unsigned char* parts = bytesOf(node) + kHeader - size;
+    if (this->header.elsewhere)
+    {
+      std::memcpy(&parts, bytesOf(node) + kHeader - sizeof(parts), sizeof(parts));
+    }
+    std::memcpy(this->corners.data(), parts, sizeof(Corner) * this->oldCount);
+    this->ears = parts + sizeof(Corner) * this->oldCount;
+    this->sources = this->ears + this->newCount; // if there are some
+    if (this->newCount == 0)
+    {
+      std::memcpy(this->ring.data(), this->ears, sizeof(this->ring));
+    }
+  }
+
+  Index slot(int i) const { return triangleOf(this->corners[i]); }
+};
+
+// The triangles that fill a hole, from the ears: what is left of the polygon is linked.
+template <typename Visit>
+void visitFilling(const Step& step, Visit&& visit)
+{
+  std::array<unsigned char, kMaximumPatchCells + 1> next;
+  std::array<unsigned char, kMaximumPatchCells + 1> previous;
+  for (int i = 0; i < step.ringSize; ++i)
+  {
+    next[i] = static_cast<unsigned char>(i + 1 == step.ringSize ? 0 : i + 1);
+    previous[i] = static_cast<unsigned char>(i == 0 ? step.ringSize - 1 : i - 1);
+  }
+  for (int i = 0; i < step.newCount; ++i)
+  {
+    const unsigned char ear = step.ears[i];
+    const unsigned char before = previous[ear];
+    const unsigned char behind = next[ear];
+    visit(i, before, ear, behind);
+    next[before] = behind;
+    previous[behind] = before;
+  }
+}
+
+// The step in the form that the record's shapes are made from.
+class CellsOfStep
+{
+public:
+  const RecordBuilder::Step& of(const Step& from)
+  {
+    for (int i = 0; i < from.oldCount; ++i)
+    {
+      const int corner = cornerOf(from.corners[i]);
+      unsigned char* cell = this->oldCells_.data() + 3 * i;
+      cell[corner] = 0;
+      cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
+      cell[previousCorner(corner)] = static_cast<unsigned char>(i + 1 == from.ringSize ? 1 : i + 2);
+    }
+    visitFilling(from,
+      [this](int i, unsigned char before, unsigned char ear, unsigned char behind)
+      {
+        unsigned char* cell = this->newCells_.data() + 3 * i;
+        cell[0] = static_cast<unsigned char>(before + 1);
+        cell[1] = static_cast<unsigned char>(ear + 1);
+        cell[2] = static_cast<unsigned char>(behind + 1);
+      });
+    this->step_.ring = from.ring.data();
+    this->step_.ringSize = from.ringSize;
+    this->step_.oldCount = from.oldCount;
+    this->step_.newCount = from.newCount;
+    this->step_.oldCells = this->oldCells_.data();
+    this->step_.newCells = this->newCells_.data();
+    this->step_.sources = from.sources;
+    return this->step_;
+  }
+
+private:
+  RecordBuilder::Step step_;
+  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
+  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
+};
+
+} // namespace
+
+StepWriter::StepWriter(bool trackSources, bool keepPositions)
+  : trackSources_(trackSources)
+  , keepPositions_(keepPositions)
+{
+}
+
+unsigned char* StepWriter::allocate(std::size_t size)
+{
+  constexpr std::size_t kBlock = std::size_t{ 1 } << 16;
+  static_assert((sizeof(Corner) + 2) * kMaximumPatchCells < kBlock, "");
+  if (this->blocks_.empty() || this->used_ + size > kBlock)
+  {
+    this->blocks_.emplace_back(new unsigned char[kBlock]);
+    this->used_ = 0;
+  }
+  unsigned char* memory = this->blocks_.back().get() + this->used_;
+  this->used_ += size;
+  return memory;
+}
+
+void StepWriter::write(
+  TriangleTopology& topology, const Hole& hole, const HoleTriangulation& filling, double error)
+{
+  if (this->trackSources_)
+  {
+    findCellSources(topology, hole, filling, this->sources_.data());
+  }
+  MeshNode& node = topology.node(hole.node);
+  const std::size_t size = partsSize(hole.triangleCount, filling.count, this->trackSources_);
+  const std::size_t room = kHeader - (this->keepPositions_ ? kBeginBehindPosition : kBegin);
+  Header header{ static_cast<unsigned char>(hole.triangleCount), hole.boundary, size > room,
+    this->trackSources_, static_cast<float>(error), kNone };
+  unsigned char* parts = bytesOf(node) + kHeader - size;
+  if (header.elsewhere)
+  {
+    parts = this->allocate(size);
+    std::memcpy(bytesOf(node) + kHeader - sizeof(parts), &parts, sizeof(parts));
+  }
+  setHeader(node, header);
+  std::memcpy(parts, hole.corners.data(), sizeof(Corner) * hole.triangleCount);
+  parts += sizeof(Corner) * hole.triangleCount;
+  for (int i = 0; i < filling.count; ++i)
+  {
+    *parts++ = filling.triangles[i][1];
+  }
+  if (this->trackSources_)
+  {
+    parts = std::copy_n(this->sources_.begin(), filling.count, parts);
+  }
+  if (filling.count == 0)
+  {
+    std::memcpy(parts, hole.ring.data(), 2 * sizeof(Index));
+  }
+}
+
+void RemovalChain::append(Index node)
+{
+  const Index place = this->count_ % kAhead;
+  if (this->count_ < kAhead)
+  {
+    this->first_[place] = node;
+  }
+  else
+  {
+    MeshNode& earlier = this->topology_.node(this->last_[place]);
+    Header header = headerOf(earlier);
+    header.later = node;
+    setHeader(earlier, header);
+  }
+  this->last_[place] = node;
+  ++this->count_;
+}
+
+std::vector<Index> RemovalChain::nodes() const
+{
+  std::vector<Index> nodes(this->count_);
+  std::copy_n(this->first_.begin(), std::min(this->count_, kAhead), nodes.begin());
+  for (Index i = 0; i + kAhead < this->count_; ++i)
+  {
+    nodes[i + kAhead] = headerOf(this->topology_.node(nodes[i])).later;
+    this->topology_.prefetchNode(nodes[i + kAhead]);
+  }
+  return nodes;
+}
+
+int cellsGone(const MeshNode& removed)
+{
+  return headerOf(removed).boundary ? 1 : 2;
+}
+
+void undo(TriangleTopology& topology, Index removed)
+{
+  const Step step(topology.node(removed));
+  std::array<Index, kMaximumPatchCells + 1> ring;
+  std::copy(step.ring.begin(), step.ring.end(), ring.begin());
+  visitFilling(step,
+    [&](int i, unsigned char before, unsigned char ear, unsigned char behind)
+    {
+      const auto& nodes = topology.triangle(step.slot(i)).nodes;
+      ring[before] = nodes[0];
+      ring[ear] = nodes[1];
+      ring[behind] = nodes[2];
+    });
+  for (int i = 0; i < step.oldCount; ++i)
+  {
+    auto& nodes = topology.triangle(step.slot(i)).nodes;
+    const int corner = cornerOf(step.corners[i]);
+    nodes[corner] = removed;
+    nodes[nextCorner(corner)] = ring[i];
+    nodes[previousCorner(corner)] = ring[i + 1 == step.ringSize ? 0 : i + 1];
+  }
+}
+
+namespace
+{
+
+/// Makes the record in blocks of steps, nodes and triangles, each of them a job.
+class RecordMaker
+{
+public:
+  RecordMaker(
+    TriangleTopology& topology, std::vector<Index>& removed, bool hasSources, Threads* threads)
+    : topology_(topology)
+    , removed_(removed)
+    , threads_(threads)
+    , steps_(static_cast<Index>(removed.size()))
+  {
+    Record& record = this->record_;
+    record.hasSources = hasSources;
+    record.nodeCount = topology.nodeCount();
+    record.cellCount = topology.triangleCount();
+    record.baseNodeCount = record.nodeCount - this->steps_;
+  }
+
+  Record make(std::vector<Index>& baseTriangles)
+  {
+    Record& record = this->record_;
+    this->count();
+    this->numberSlots();
+    baseTriangles.resize(std::size_t{ 3 } * record.baseCellCount);
+    this->forBlocks(record.cellCount,
+      [&](Index begin, Index end)
+      {
+        for (Index slot = begin; slot < end; ++slot)
+        {
+          const Index place = this->slots_[slot];
+          if (place < record.baseCellCount)
+          {
+            const auto& nodes = this->topology_.triangle(slot).nodes;
+            std::copy(
+              nodes.begin(), nodes.end(), baseTriangles.begin() + std::ptrdiff_t{ 3 } * place);
+          }
+        }
+      });
+    this->topology_.freeTriangles();
+    this->invert(this->slots_, record.cellOrder);
+    this->numberNodes();
+    this->forBlocks(record.baseCellCount,
+      [&](Index begin, Index end)
+      {
+        for (std::size_t i = std::size_t{ 3 } * begin; i < std::size_t{ 3 } * end; ++i)
+        {
+          baseTriangles[i] = this->nodes_[baseTriangles[i]];
+        }
+      });
+    if (record.hasSources)
+    {
+      this->findSources();
+    }
+    this->writeSteps();
+    release(this->removed_);
+    this->topology_.freeNodes();
+    return std::move(record);
+  }
+
+private:
+  using Range = std::function<void(Index begin, Index end)>;
+
+  // Of the steps [begin, end).
+  struct Block
+  {
+    Index begin = 0;
+    Index end = 0;
+    std::size_t slots = 0; // that they free; later those that the blocks up to this one do
+    std::size_t patches = 0;
+    float error = 0.0F; // the largest one
+    // Shapes by the first step that has them.
+    std::vector<unsigned char> shapes;
+    std::vector<Index> shapeOffsets{ 0 };
+    std::vector<Index> numbers; // of these shapes in the record
+  };
+
+  void run(Index count, const std::function<void(Index)>& job)
+  {
+    if (this->threads_)
+    {
+      this->threads_->run(count, [&job](Index i, int /*thread*/) { job(i); });
+      return;
+    }
+    for (Index i = 0; i < count; ++i)
+    {
+      job(i);
+    }
+  }
+
+  void forBlocks(Index count, const Range& job)
+  {
+    constexpr Index kBlock = 1 << 15;
+    const Index size = this->threads_ ? kBlock : std::max(count, kBlock);
+    this->run(
+      count / size + 1, [&](Index i) { job(i * size, i < count / size ? (i + 1) * size : count); });
+  }
+
+  template <typename Visit>
+  void visitSteps(const Block& block, Visit&& visit)
+  {
+    constexpr Index kAhead = 12;
+    for (Index i = block.begin; i < block.end; ++i)
+    {
+      this->topology_.prefetchNode(this->removed_[std::min(i + kAhead, block.end - 1)]);
+      visit(i, this->topology_.node(this->removed_[i]));
+    }
+  }
+
+  // Cut the steps into blocks and count what they have.
+  void count()
+  {
+    constexpr Index kSmallest = 1 << 12;
+    constexpr Index kBlocksOfThread = 4; // fewer have fewer shapes twice
+    const Index wanted = this->threads_ ? kBlocksOfThread * this->threads_->count() : 1;
+    const Index blocks = std::clamp<Index>(this->steps_ / kSmallest, 1, wanted);
+    this->blocks_.resize(blocks);
+    this->run(blocks,
+      [&](Index i)
+      {
+        Block& block = this->blocks_[i];
+        block.begin = static_cast<Index>(std::int64_t{ this->steps_ } * i / blocks);
+        block.end = static_cast<Index>(std::int64_t{ this->steps_ } * (i + 1) / blocks);
+        this->visitSteps(block,
+          [&](Index /*step*/, const MeshNode& node)
+          {
+            const Header header = headerOf(node);
+            const int newCount = newCountOf(header);
+            block.slots += header.oldCount - newCount;
+            block.patches += newCount == 0 ? 2 : newCount;
+            block.error = std::max(block.error, header.error);
+          });
+      });
+    for (Index i = 1; i < blocks; ++i)
+    {
+      Block& block = this->blocks_[i];
+      const Block& before = this->blocks_[i - 1];
+      block.slots += before.slots;
+      block.patches += before.patches;
+      block.error = std::max(block.error, before.error);
+    }
+    this->record_.baseCellCount =
+      this->record_.cellCount - static_cast<Index>(this->blocks_.back().slots);
+  }
+
+  // Number the entries that have none yet, in their order.
+  void numberRest(LargeArray<Index>& numbers)
+  {
+    const Index count = static_cast<Index>(numbers.size());
+    constexpr Index kBlock = 1 << 15;
+    std::vector<Index> firsts(count / kBlock + std::size_t{ 2 }, 0);
+    const auto end = [&](Index block)
+    { return block < count / kBlock ? (block + 1) * kBlock : count; };
+    this->run(count / kBlock + 1,
+      [&](Index block)
+      {
+        firsts[block + std::size_t{ 1 }] = static_cast<Index>(
+          std::count(numbers.begin() + block * kBlock, numbers.begin() + end(block), kNone));
+      });
+    std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
+    this->run(count / kBlock + 1,
+      [&](Index block)
+      {
+        Index next = firsts[block];
+        for (Index i = block * kBlock; i < end(block); ++i)
+        {
+          if (numbers[i] == kNone)
+          {
+            numbers[i] = next++;
+          }
+        }
+      });
+  }
+
+  // The last step that is removed comes back first, and its slots in their order.
+  void numberSlots()
+  {
+    this->slots_.assign(this->record_.cellCount, kNone);
+    this->run(static_cast<Index>(this->blocks_.size()),
+      [&](Index i)
+      {
+        const std::size_t before = i == 0 ? 0 : this->blocks_[i - std::size_t{ 1 }].slots;
+        Index end = this->record_.cellCount - static_cast<Index>(before);
+        this->visitSteps(this->blocks_[i],
+          [&](Index /*step*/, const MeshNode& node)
+          {
+            const Step step(node);
+            end -= step.oldCount - step.newCount;
+            for (int k = step.newCount; k < step.oldCount; ++k)
+            {
+              this->slots_[step.slot(k)] = end + k - step.newCount;
+            }
+          });
+      });
+    this->numberRest(this->slots_);
+  }
+
+  void numberNodes()
+  {
+    this->nodes_.assign(this->record_.nodeCount, kNone);
+    this->forBlocks(this->steps_,
+      [&](Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          this->nodes_[this->removed_[i]] = this->record_.nodeCount - 1 - i;
+        }
+      });
+    this->numberRest(this->nodes_);
+    this->invert(this->nodes_, this->record_.nodeOrder);
+  }
+
+  void invert(const LargeArray<Index>& numbers, std::vector<Index>& order)
+  {
+    order.resize(numbers.size());
+    this->forBlocks(static_cast<Index>(numbers.size()),
+      [&](Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          order[numbers[i]] = i;
+        }
+      });
+  }
+
+  void findSources()
+  {
+    Record& record = this->record_;
+    std::vector<Index> sources(record.cellCount);
+    std::iota(sources.begin(), sources.end(), 0);
+    std::vector<unsigned char> counts; // of lost ones
+    counts.reserve(this->steps_);
+    for (const Block& block : this->blocks_)
+    {
+      this->visitSteps(block,
+        [&](Index /*step*/, const MeshNode& node)
+        {
+          const Step step(node);
+          std::array<Index, kMaximumPatchCells> slots;
+          for (int i = 0; i < step.oldCount; ++i)
+          {
+            slots[i] = step.slot(i);
+          }
+          const std::size_t before = record.lostSources.size();
+          inheritSources(
+            step.sources, step.oldCount, step.newCount, slots.data(), sources, record.lostSources);
+          counts.push_back(static_cast<unsigned char>(record.lostSources.size() - before));
+        });
+    }
+    // Steps in reverse, each as it is.
+    std::reverse(record.lostSources.begin(), record.lostSources.end());
+    auto lost = record.lostSources.begin();
+    for (auto count = counts.rbegin(); count != counts.rend(); lost += *count++)
+    {
+      std::reverse(lost, lost + *count);
+    }
+    record.baseSources.resize(record.baseCellCount);
+    for (Index i = 0; i < record.baseCellCount; ++i)
+    {
+      record.baseSources[i] = sources[record.cellOrder[i]];
+    }
+  }
+
+  void writeSteps()
+  {
+    Record& record = this->record_;
+    record.stepShapes.resize(this->steps_);
+    record.stepErrors.resize(this->steps_);
+    record.patches.resize(this->blocks_.back().patches);
+    const Index blocks = static_cast<Index>(this->blocks_.size());
+    this->run(blocks, [this](Index i) { this->writeBlock(i); });
+    if (blocks == 1)
+    {
+      record.shapes.swap(this->blocks_.front().shapes);
+      record.shapeOffsets.swap(this->blocks_.front().shapeOffsets);
+      return;
+    }
+    // Blocks in their order: a shape's number is still that of the first step that has it.
+    ShapeTable table;
+    for (Block& block : this->blocks_)
+    {
+      for (std::size_t i = 0; i + 1 < block.shapeOffsets.size(); ++i)
+      {
+        const Index begin = block.shapeOffsets[i];
+        const int size = block.shapeOffsets[i + 1] - begin;
+        ShapeTable::Shape shape;
+        std::copy_n(block.shapes.begin() + begin, size, shape.begin());
+        padWithZeros(shape, size);
+        block.numbers.push_back(table.number(shape, size, record));
+      }
+      release(block.shapes);
+      release(block.shapeOffsets);
+    }
+    this->run(blocks,
+      [&](Index i)
+      {
+        const Block& block = this->blocks_[i];
+        const auto shapes = record.stepShapes.rbegin();
+        for (Index step = block.begin; step < block.end; ++step)
+        {
+          shapes[step] = block.numbers[shapes[step]];
+        }
+      });
+  }
+
+  // Shapes are numbered in the block.
+  void writeBlock(Index number)
+  {
+    Record& record = this->record_;
+    Block& block = this->blocks_[number];
+    const bool first = number == 0;
+    float error = first ? 0.0F : this->blocks_[number - std::size_t{ 1 }].error;
+    Index* patch = record.patches.data() + record.patches.size() -
+      (first ? 0 : this->blocks_[number - std::size_t{ 1 }].patches);
+    ShapeTable table;
+    CellsOfStep cells;
+    this->visitSteps(block,
+      [&](Index i, const MeshNode& node)
+      {
+        const Step step(node);
+        const EncodedStep encoded = encode<kTriangleCorners>(cells.of(step), record.hasSources);
+        error = std::max(error, step.header.error);
+        const Index place = this->steps_ - 1 - i;
+        record.stepShapes[place] = table.number(encoded.shape, encoded.size, block);
+        record.stepErrors[place] = error;
+        patch -= step.newCount + encoded.extra;
+        for (int k = 0; k < step.newCount; ++k)
+        {
+          patch[k] = this->slots_[step.slot(k)];
+        }
+        for (int k = 0; k < encoded.extra; ++k)
+        {
+          patch[step.newCount + k] = this->nodes_[encoded.extraNodes[k]];
+        }
+      });
+  }
+
+  TriangleTopology& topology_;
+  std::vector<Index>& removed_;
+  Threads* threads_;
+  Index steps_;
+  Record record_;
+  std::vector<Block> blocks_;
+  LargeArray<Index> slots_; // record numbers of the slots
+  LargeArray<Index> nodes_; // and of the nodes
+};
+
+} // namespace
+
+Record recordOf(TriangleTopology& topology, std::vector<Index>& removed, bool hasSources,
+  std::vector<Index>& baseTriangles, Threads* threads)
+{
+  return RecordMaker(topology, removed, hasSources, threads).make(baseTriangles);
+}
+
+} // namespace undecimate
