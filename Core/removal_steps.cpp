@@ -90,10 +90,10 @@ struct Step
   int oldCount;
   int newCount;
   int ringSize;
-  std::array<Corner, kMaximumPatchCells> corners; // of the node in the old triangles
+  const unsigned char* corners; // of the node in the old triangles
   const unsigned char* ears;
   const unsigned char* sources;
-  std::array<Index, 2> ring; // of a hole that is not filled
+  std::array<Index, 2> ring{ kNone, kNone }; // of a hole that is not filled
 
   explicit Step(const MeshNode& node)
     : header(headerOf(node))
@@ -107,7 +107,7 @@ struct Step
     {
       std::memcpy(&parts, bytesOf(node) + kHeader - sizeof(parts), sizeof(parts));
     }
-    std::memcpy(this->corners.data(), parts, sizeof(Corner) * this->oldCount);
+    this->corners = parts;
     this->ears = parts + sizeof(Corner) * this->oldCount;
     this->sources = this->ears + this->newCount; // if there are some
     if (this->newCount == 0)
@@ -116,20 +116,46 @@ struct Step
     }
   }
 
-  Index slot(int i) const { return triangleOf(this->corners[i]); }
+  Corner corner(int i) const
+  {
+    Corner corner = kNoCorner;
+    std::memcpy(&corner, this->corners + sizeof(corner) * i, sizeof(corner));
+    return corner;
+  }
+  Index slot(int i) const { return triangleOf(this->corner(i)); }
 };
+
+// Neighbours in a polygon: of corner i, i + 1 or i - 1.
+constexpr std::size_t kPolygon = kMaximumPatchCells + 1;
+using Neighbours = std::array<unsigned char, kPolygon>;
+constexpr Neighbours neighboursAt(int distance)
+{
+  Neighbours neighbours{};
+  for (int i = 0; i < static_cast<int>(kPolygon); ++i)
+  {
+    neighbours[i] = static_cast<unsigned char>(i + distance);
+  }
+  return neighbours;
+}
 
 // The triangles that fill a hole, from the ears: what is left of the polygon is linked.
 template <typename Visit>
 void visitFilling(const Step& step, Visit&& visit)
 {
-  std::array<unsigned char, kMaximumPatchCells + 1> next;
-  std::array<unsigned char, kMaximumPatchCells + 1> previous;
-  for (int i = 0; i < step.ringSize; ++i)
+  static constexpr Neighbours kNext = neighboursAt(1);
+  static constexpr Neighbours kPrevious = neighboursAt(-1);
+  constexpr int kFew = 16; // most polygons: a copy of known size
+  Neighbours next;
+  Neighbours previous;
+  std::memcpy(next.data(), kNext.data(), kFew);
+  std::memcpy(previous.data(), kPrevious.data(), kFew);
+  if (step.ringSize > kFew)
   {
-    next[i] = static_cast<unsigned char>(i + 1 == step.ringSize ? 0 : i + 1);
-    previous[i] = static_cast<unsigned char>(i == 0 ? step.ringSize - 1 : i - 1);
+    next = kNext;
+    previous = kPrevious;
   }
+  next[step.ringSize - 1] = 0;
+  previous[0] = static_cast<unsigned char>(step.ringSize - 1);
   for (int i = 0; i < step.newCount; ++i)
   {
     const unsigned char ear = step.ears[i];
@@ -141,43 +167,59 @@ void visitFilling(const Step& step, Visit&& visit)
   }
 }
 
-// The step in the form that the record's shapes are made from.
-class CellsOfStep
+// As encode() of record_shapes.h, straight from the ears.
+void encode(const Step& step, EncodedStep& encoded)
 {
-public:
-  const RecordBuilder::Step& of(const Step& from)
+  std::array<unsigned char, kPolygon + 1> local; // of a ring node, the first again at the end
+  std::fill_n(local.begin(), step.ringSize, static_cast<unsigned char>(0));
+  unsigned char locals = 0;
+  const auto number = [&local, &locals](int i)
   {
-    for (int i = 0; i < from.oldCount; ++i)
+    const bool known = local[i] != 0;
+    locals = static_cast<unsigned char>(locals + (known ? 0 : 1));
+    local[i] = known ? local[i] : locals;
+    return local[i];
+  };
+  ShapeTable::Shape& shape = encoded.shape;
+  unsigned char* oldLocals = shape.data() + 3;
+  unsigned char* newLocals = oldLocals + 3 * step.oldCount;
+  visitFilling(step,
+    [&](int i, unsigned char before, unsigned char ear, unsigned char behind)
     {
-      const int corner = cornerOf(from.corners[i]);
-      unsigned char* cell = this->oldCells_.data() + 3 * i;
-      cell[corner] = 0;
-      cell[nextCorner(corner)] = static_cast<unsigned char>(i + 1);
-      cell[previousCorner(corner)] = static_cast<unsigned char>(i + 1 == from.ringSize ? 1 : i + 2);
-    }
-    visitFilling(from,
-      [this](int i, unsigned char before, unsigned char ear, unsigned char behind)
-      {
-        unsigned char* cell = this->newCells_.data() + 3 * i;
-        cell[0] = static_cast<unsigned char>(before + 1);
-        cell[1] = static_cast<unsigned char>(ear + 1);
-        cell[2] = static_cast<unsigned char>(behind + 1);
-      });
-    this->step_.ring = from.ring.data();
-    this->step_.ringSize = from.ringSize;
-    this->step_.oldCount = from.oldCount;
-    this->step_.newCount = from.newCount;
-    this->step_.oldCells = this->oldCells_.data();
-    this->step_.newCells = this->newCells_.data();
-    this->step_.sources = from.sources;
-    return this->step_;
+      newLocals[3 * i] = number(before);
+      newLocals[3 * i + 1] = number(ear);
+      newLocals[3 * i + 2] = number(behind);
+    });
+  encoded.extra = 0;
+  if (step.newCount == 0)
+  {
+    // The two nodes as they stand in the triangle.
+    const int first = cornerOf(step.corner(0)) == 1 ? 1 : 0;
+    encoded.extraNodes[0] = step.ring[first];
+    encoded.extraNodes[1] = step.ring[1 - first];
+    number(first);
+    number(1 - first);
+    encoded.extra = 2;
   }
-
-private:
-  RecordBuilder::Step step_;
-  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> oldCells_;
-  std::array<unsigned char, std::size_t{ 3 } * kMaximumPatchCells> newCells_;
-};
+  local[step.ringSize] = local[0];
+  for (int i = 0; i < step.oldCount; ++i)
+  {
+    const int corner = cornerOf(step.corner(i));
+    oldLocals[3 * i + corner] = 0;
+    oldLocals[3 * i + nextCorner(corner)] = local[i];
+    oldLocals[3 * i + previousCorner(corner)] = local[i + 1];
+  }
+  shape[0] = static_cast<unsigned char>(step.oldCount);
+  shape[1] = static_cast<unsigned char>(step.newCount);
+  shape[2] = static_cast<unsigned char>(encoded.extra);
+  encoded.size = 3 + 3 * (step.oldCount + step.newCount);
+  if (step.header.hasSources)
+  {
+    std::copy_n(step.sources, step.newCount, shape.begin() + encoded.size);
+    encoded.size += step.newCount;
+  }
+  padWithZeros(shape, encoded.size);
+}
 
 } // namespace
 
@@ -287,7 +329,7 @@ void undo(TriangleTopology& topology, Index removed)
   for (int i = 0; i < step.oldCount; ++i)
   {
     auto& nodes = topology.triangle(step.slot(i)).nodes;
-    const int corner = cornerOf(step.corners[i]);
+    const int corner = cornerOf(step.corner(i));
     nodes[corner] = removed;
     nodes[nextCorner(corner)] = ring[i];
     nodes[previousCorner(corner)] = ring[i + 1 == step.ringSize ? 0 : i + 1];
@@ -611,12 +653,12 @@ private:
     Index* patch = record.patches.data() + record.patches.size() -
       (first ? 0 : this->blocks_[number - std::size_t{ 1 }].patches);
     ShapeTable table;
-    CellsOfStep cells;
+    EncodedStep encoded;
     this->visitSteps(block,
       [&](Index i, const MeshNode& node)
       {
         const Step step(node);
-        const EncodedStep encoded = encode<kTriangleCorners>(cells.of(step), record.hasSources);
+        encode(step, encoded);
         error = std::max(error, step.header.error);
         const Index place = this->steps_ - 1 - i;
         record.stepShapes[place] = table.number(encoded.shape, encoded.size, block);
