@@ -156,30 +156,35 @@ UNDECIMATE_INLINE float squaredDistance(
 namespace
 {
 
-UNDECIMATE_INLINE void minimumDistancesAt(int lanes, const float* __restrict__ triangle,
+UNDECIMATE_INLINE void minimumDistancesAt(int lanes, const float* __restrict__ triangles, int count,
   const float* __restrict__ point, float* __restrict__ squares)
 {
-  for (int i = 0; i < lanes; ++i)
+  for (int k = 0; k < count; ++k)
   {
-    float sides[3];
-    const float square = squaredDistance(triangle, lanes, i, at(point, lanes, i), sides);
-    squares[i] = smaller(squares[i], square);
+    const float* __restrict__ triangle =
+      triangles + static_cast<std::ptrdiff_t>(kTriangleRows) * lanes * k;
+    for (int i = 0; i < lanes; ++i)
+    {
+      float sides[3];
+      const float square = squaredDistance(triangle, lanes, i, at(point, lanes, i), sides);
+      squares[i] = smaller(squares[i], square);
+    }
   }
 }
 
 } // namespace
 
 UNDECIMATE_VECTOR_CLONES
-void minimumDistances(int lanes, const float* __restrict__ triangle,
+void minimumDistances(int lanes, const float* __restrict__ triangles, int count,
   const float* __restrict__ point, float* __restrict__ squares)
 {
   if (lanes == kFewLanes)
   {
-    minimumDistancesAt(kFewLanes, triangle, point, squares);
+    minimumDistancesAt(kFewLanes, triangles, count, point, squares);
   }
   else
   {
-    minimumDistancesAt(wholeBlocks(lanes), triangle, point, squares);
+    minimumDistancesAt(wholeBlocks(lanes), triangles, count, point, squares);
   }
 }
 
@@ -384,6 +389,23 @@ float largest(int lanes, const float* row)
   return larger(larger(most[0], most[1]), larger(most[2], most[3]));
 }
 
+bool isAtMost(int lanes, const float* a, const float* b)
+{
+  for (int i = 0; i < lanes; i += kFewLanes)
+  {
+    int above = 0;
+    for (int k = i; k < i + kFewLanes; ++k)
+    {
+      above += !(a[k] <= b[k]);
+    }
+    if (above != 0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 namespace
 {
 
@@ -424,39 +446,59 @@ UNDECIMATE_INLINE bool isBadCell(
   return bad;
 }
 
+// Whether a cell would be bad in the place of another one at a step, and that cell's normal.
+template <int OldCount, int NewCount>
+UNDECIMATE_INLINE bool becomesBad(
+  int lanes, const float* const* oldCorners, const float* const* newCorners, int i, V& before)
+{
+  before = cellNormal(oldCorners, OldCount, lanes, i);
+  const V now = cellNormal(newCorners, NewCount, lanes, i);
+  const float both = dot(before, now);
+  const float squares = dot(before, before) * dot(now, now);
+  const bool turns = !(both > 0.0F && both * both > kMinimumCosine * kMinimumCosine * squares);
+  return turns || isBadCell(newCorners, NewCount, lanes, i, now);
+}
+
 // Whether a cell may not take the place of another one at a step.
 template <int OldCount, int NewCount>
 UNDECIMATE_INLINE bool isRefused(
   int lanes, const float* const* oldCorners, const float* const* newCorners, int i)
 {
-  const V before = cellNormal(oldCorners, OldCount, lanes, i);
-  const V now = cellNormal(newCorners, NewCount, lanes, i);
-  const float both = dot(before, now);
-  const float squares = dot(before, before) * dot(now, now);
-  const bool turns = !(both > 0.0F && both * both > kMinimumCosine * kMinimumCosine * squares);
-  const bool bad = turns || isBadCell(newCorners, NewCount, lanes, i, now);
+  V before;
+  const bool bad = becomesBad<OldCount, NewCount>(lanes, oldCorners, newCorners, i, before);
   return bad && !isBadCell(oldCorners, OldCount, lanes, i, before);
 }
 
 template <int OldCount, int NewCount>
-UNDECIMATE_INLINE int countBad(
+UNDECIMATE_INLINE int countRefused(
   int lanes, const float* const* oldCorners, const float* const* newCorners)
 {
+  // Few become bad, and only then the old cell matters.
   int badLanes = 0;
   for (int i = 0; i < lanes; ++i)
   {
-    badLanes += isRefused<OldCount, NewCount>(lanes, oldCorners, newCorners, i);
+    V before;
+    badLanes += becomesBad<OldCount, NewCount>(lanes, oldCorners, newCorners, i, before);
   }
-  return badLanes;
+  if (badLanes == 0)
+  {
+    return 0;
+  }
+  int refused = 0;
+  for (int i = 0; i < lanes; ++i)
+  {
+    refused += isRefused<OldCount, NewCount>(lanes, oldCorners, newCorners, i);
+  }
+  return refused;
 }
 
 template <int OldCount, int NewCount>
-UNDECIMATE_INLINE bool hasNoBad(
+UNDECIMATE_INLINE bool isAllowed(
   int lanes, const float* const* oldCorners, const float* const* newCorners)
 {
   return (lanes == kFewLanes
-             ? countBad<OldCount, NewCount>(kFewLanes, oldCorners, newCorners)
-             : countBad<OldCount, NewCount>(wholeBlocks(lanes), oldCorners, newCorners)) == 0;
+             ? countRefused<OldCount, NewCount>(kFewLanes, oldCorners, newCorners)
+             : countRefused<OldCount, NewCount>(wholeBlocks(lanes), oldCorners, newCorners)) == 0;
 }
 
 } // namespace
@@ -467,13 +509,13 @@ bool mayReplaceCell(int lanes, const float* const* oldCorners, int oldCount,
 {
   if (oldCount == 3)
   {
-    return hasNoBad<3, 3>(lanes, oldCorners, newCorners);
+    return isAllowed<3, 3>(lanes, oldCorners, newCorners);
   }
   if (newCount == 3)
   {
-    return hasNoBad<4, 3>(lanes, oldCorners, newCorners);
+    return isAllowed<4, 3>(lanes, oldCorners, newCorners);
   }
-  return hasNoBad<4, 4>(lanes, oldCorners, newCorners);
+  return isAllowed<4, 4>(lanes, oldCorners, newCorners);
 }
 
 namespace

@@ -27,10 +27,12 @@ constexpr int kQuadricWeight = 10;
 /// @param[out] triangle kTriangleRows * lanes
 void prepareTriangle(int lanes, const float* a, const float* b, const float* c, float* triangle);
 
-/// squares[i] = min(squares[i], squared distance of the point to the triangle).
-void minimumDistances(int lanes, const float* triangle, const float* point, float* squares);
+/// squares[i] = min(squares[i], squared distance of the point to some triangles).
+/// @param triangles one behind the other
+void minimumDistances(
+  int lanes, const float* triangles, int count, const float* point, float* squares);
 
-/// The same, and where this triangle is the nearest so far errors[i] = the squared difference
+/// The same of one triangle, and where it is the nearest so far errors[i] = the squared difference
 /// between the value interpolated from the triangle's corners and the point's, added over all
 /// components, times scale^2, largest over the arrays.
 struct LaneValues
@@ -73,6 +75,9 @@ void lower(int lanes, const float* from, float* to);
 
 /// The largest value of a row.
 float largest(int lanes, const float* row);
+
+/// Whether a[i] <= b[i] everywhere.
+bool isAtMost(int lanes, const float* a, const float* b);
 
 /// Whether a cell may take the place of another one at all steps: it turns by less than the angle
 /// of kMinimumCosine, is no needle, and a quad has no corner that points inwards. At steps where

@@ -118,7 +118,7 @@ TEST_P(TimeLanes, MeasureDistancesToTriangles)
     std::vector<float> triangle(kTriangleRows * lanes);
     std::vector<float> squares(lanes, std::numeric_limits<float>::infinity());
     prepareTriangle(lanes, a.data(), b.data(), c.data(), triangle.data());
-    minimumDistances(lanes, triangle.data(), p.data(), squares.data());
+    minimumDistances(lanes, triangle.data(), 1, p.data(), squares.data());
     std::vector<float> edge(lanes, 0.0F);
     maximumDistanceToEdge(lanes, a.data(), b.data(), p.data(), edge.data());
     for (int i = 0; i < lanes; ++i)
@@ -131,6 +131,52 @@ TEST_P(TimeLanes, MeasureDistancesToTriangles)
         { a.at(i)[0] + f * along[0], a.at(i)[1] + f * along[1], a.at(i)[2] + f * along[2] });
       EXPECT_NEAR(std::sqrt(edge[i]), std::sqrt(dot(rest, rest)), 1e-5);
     }
+  }
+}
+
+TEST_P(TimeLanes, TakeTheNearestOfSeveralTriangles)
+{
+  const int lanes = GetParam();
+  std::mt19937 random(8);
+  for (int round = 0; round < 50; ++round)
+  {
+    constexpr int kCount = 3;
+    std::vector<float> triangles(kCount * kTriangleRows * lanes);
+    Rows p(lanes);
+    p.randomize(random);
+    std::vector<float> expected(lanes, std::numeric_limits<float>::infinity());
+    for (int k = 0; k < kCount; ++k)
+    {
+      Rows corners[3] = { Rows(lanes), Rows(lanes), Rows(lanes) };
+      for (Rows& corner : corners)
+      {
+        corner.randomize(random);
+      }
+      float* triangle = triangles.data() + k * kTriangleRows * lanes;
+      prepareTriangle(lanes, corners[0].data(), corners[1].data(), corners[2].data(), triangle);
+      std::vector<float> alone(lanes, std::numeric_limits<float>::infinity());
+      minimumDistances(lanes, triangle, 1, p.data(), alone.data());
+      lower(lanes, alone.data(), expected.data());
+    }
+    std::vector<float> squares(lanes, std::numeric_limits<float>::infinity());
+    minimumDistances(lanes, triangles.data(), kCount, p.data(), squares.data());
+    EXPECT_EQ(squares, expected);
+  }
+}
+
+TEST_P(TimeLanes, AreComparedInAllLanes)
+{
+  const int lanes = GetParam();
+  const std::vector<float> a(lanes, 1.0F);
+  for (int i = 0; i < lanes; ++i)
+  {
+    std::vector<float> b(lanes, 2.0F);
+    b[i] = 1.0F;
+    EXPECT_TRUE(isAtMost(lanes, a.data(), b.data()));
+    b[i] = 0.5F;
+    EXPECT_FALSE(isAtMost(lanes, a.data(), b.data()));
+    b[i] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(isAtMost(lanes, a.data(), b.data()));
   }
 }
 
@@ -168,7 +214,7 @@ TEST_P(TimeLanes, TrianglesWithoutAreaAreFarAway)
   std::vector<float> triangle(kTriangleRows * lanes);
   prepareTriangle(lanes, a.data(), a.data(), a.data(), triangle.data());
   std::vector<float> squares(lanes, 3.0F);
-  minimumDistances(lanes, triangle.data(), a.data(), squares.data());
+  minimumDistances(lanes, triangle.data(), 1, a.data(), squares.data());
   EXPECT_EQ(squares, std::vector<float>(lanes, 3.0F));
 }
 

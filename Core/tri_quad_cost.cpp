@@ -328,14 +328,43 @@ bool TriQuadCost::gather(Index node, TriQuadPatch& patch)
   {
     return false;
   }
-  const float* center = this->positions_.at(node);
+  this->gatherRows(patch);
+  return true;
+}
+
+void TriQuadCost::gatherRows(const TriQuadPatch& patch)
+{
+  const float* center = this->positions_.at(patch.node);
   std::fill_n(this->relative_.begin(), 3 * this->lanes_, 0.0F);
   for (int i = 0; i < patch.ringSize; ++i)
   {
     subtract(this->lanes_, 3, this->positions_.at(patch.ring[i]), center,
       this->relative_.data() + std::size_t{ 3 } * this->lanes_ * (i + 1));
   }
-  return true;
+}
+
+// The copies that lie in the cells, and their positions behind those of the ring.
+void TriQuadCost::gatherRemoved(const TriQuadPatch& patch)
+{
+  this->removed_.clear();
+  for (int i = 0; i < patch.cellCount; ++i)
+  {
+    for (Index copy = this->shared_->firstRemoved[patch.slots[i]]; copy != kNone;
+         copy = this->shared_->nextRemoved[copy])
+    {
+      this->removed_.push_back({ copy, i });
+    }
+  }
+  const std::size_t size = std::size_t{ 3 } * this->lanes_;
+  const std::size_t first = patch.ringSize + 1;
+  const std::size_t end = first + this->removed_.size();
+  this->relative_.resize(std::max(this->relative_.size(), size * end));
+  for (std::size_t place = first; place < end; ++place)
+  {
+    subtract(this->lanes_, 3,
+      this->positions_.at(this->topology_.nodeOf(this->removed_[place - first].copy)),
+      this->positions_.at(patch.node), this->relative_.data() + size * place);
+  }
 }
 
 // The two nodes beside it on the boundary. On a seam all sheets must have the same two.
@@ -535,6 +564,7 @@ void TriQuadCost::Triangles::clear()
 {
   this->corners.clear();
   this->firsts.assign(1, 0);
+  this->ready.clear();
   this->centerCount = 0;
 }
 
@@ -547,7 +577,6 @@ const float* TriQuadCost::cornerPosition(const Triangles& triangles, int corner)
 
 void TriQuadCost::addCell(const unsigned char* cell, Triangles& triangles)
 {
-  const std::size_t lanes = this->lanes_;
   int corners[kTriQuadCorners];
   int count = 0;
   for (int k = 0; k < kTriQuadCorners; ++k)
@@ -563,16 +592,39 @@ void TriQuadCost::addCell(const unsigned char* cell, Triangles& triangles)
   }
   else if (count == 4)
   {
-    const std::size_t number = triangles.centerCount++;
+    const int number = triangles.centerCount++;
+    for (int k = 0; k < 4; ++k)
+    {
+      triangles.corners.push_back({ corners[k], corners[(k + 1) % 4], kCenters + number });
+    }
+  }
+  triangles.firsts.push_back(static_cast<int>(triangles.corners.size()));
+  triangles.ready.push_back(false);
+}
+
+// The triangles of a cell, prepared for distances. Many cells are never asked for.
+const float* TriQuadCost::preparedCell(Triangles& triangles, int cell)
+{
+  const std::size_t lanes = this->lanes_;
+  const std::size_t begin = triangles.firsts[cell];
+  const std::size_t end = triangles.firsts[cell + 1];
+  if (triangles.ready[cell])
+  {
+    return triangles.prepared.data() + kTriangleRows * lanes * begin;
+  }
+  triangles.ready[cell] = true;
+  if (end - begin == kTriQuadCorners)
+  {
+    const std::size_t number = triangles.corners[begin][2] - kCenters;
+    int corners[kTriQuadCorners];
+    for (int k = 0; k < kTriQuadCorners; ++k)
+    {
+      corners[k] = triangles.corners[begin + k][0];
+    }
     triangles.centers.resize(std::max(triangles.centers.size(), 3 * lanes * (number + 1)));
     center(this->lanes_, 3, this->position(corners[0]), this->position(corners[1]),
       this->position(corners[2]), this->position(corners[3]),
       triangles.centers.data() + 3 * lanes * number);
-    for (int k = 0; k < 4; ++k)
-    {
-      triangles.corners.push_back(
-        { corners[k], corners[(k + 1) % 4], kCenters + static_cast<int>(number) });
-    }
     const std::size_t rows = this->arrayOffsets_.back();
     triangles.centerValues.resize(
       std::max(triangles.centerValues.size(), rows * lanes * (number + 1)));
@@ -584,16 +636,16 @@ void TriQuadCost::addCell(const unsigned char* cell, Triangles& triangles)
         triangles.centerValues.data() + lanes * (rows * number + this->arrayOffsets_[n]));
     }
   }
-  const std::size_t end = triangles.corners.size();
-  triangles.prepared.resize(std::max(triangles.prepared.size(), kTriangleRows * lanes * end));
-  for (std::size_t t = triangles.firsts.back(); t < end; ++t)
+  triangles.prepared.resize(
+    std::max(triangles.prepared.size(), kTriangleRows * lanes * triangles.corners.size()));
+  for (std::size_t t = begin; t < end; ++t)
   {
     const auto& c = triangles.corners[t];
     prepareTriangle(this->lanes_, this->cornerPosition(triangles, c[0]),
       this->cornerPosition(triangles, c[1]), this->cornerPosition(triangles, c[2]),
       triangles.prepared.data() + kTriangleRows * lanes * t);
   }
-  triangles.firsts.push_back(static_cast<int>(end));
+  return triangles.prepared.data() + kTriangleRows * lanes * begin;
 }
 
 const float* TriQuadCost::cornerValues(
@@ -611,67 +663,85 @@ const float* TriQuadCost::cornerValues(
   return this->options_.arrays[array].rows->at(node);
 }
 
-// The distance of a point to some cells joins squares_, with the error of the arrays there if the
-// point is a node. Returns the nearest cell.
-int TriQuadCost::measurePoint(
-  const Triangles& triangles, int beginCell, int endCell, const float* point, Index node)
+// The distance of a point to some cells joins squares_, as far as it is larger there. Begin with
+// the cell that is probably near it.
+void TriQuadCost::measurePoint(
+  Triangles& triangles, int beginCell, int endCell, int firstCell, const float* point)
 {
   const int lanes = this->lanes_;
   float* nearest = this->nearest_.data();
   std::fill_n(nearest, lanes, kInfinity);
-  const bool steer = node != kNone && !this->laneValues_.empty();
+  for (int i = beginCell - 1; i < endCell; ++i)
+  {
+    const int cell = i < beginCell ? firstCell : i;
+    const int count = triangles.firsts[cell + 1] - triangles.firsts[cell];
+    if (count == 0 || i == firstCell)
+    {
+      continue;
+    }
+    minimumDistances(lanes, this->preparedCell(triangles, cell), count, point, nearest);
+    if (isAtMost(lanes, nearest, this->squares_.data()))
+    {
+      return;
+    }
+  }
+  raise(lanes, nearest, this->squares_.data());
+}
+
+// The distance of a removed node to some new cells and the error of the arrays there join squares_.
+void TriQuadCost::measureNode(int beginCell, int endCell, const float* point, Index node)
+{
+  const int lanes = this->lanes_;
+  Triangles& triangles = this->newTriangles_;
+  float* nearest = this->nearest_.data();
+  std::fill_n(nearest, lanes, kInfinity);
+  for (int cell = beginCell; cell < endCell; ++cell)
+  {
+    const float* prepared = this->preparedCell(triangles, cell);
+    for (int t = triangles.firsts[cell]; t < triangles.firsts[cell + 1]; ++t)
+    {
+      for (std::size_t n = 0; n < this->laneValues_.size(); ++n)
+      {
+        LaneValues& values = this->laneValues_[n];
+        for (int k = 0; k < 3; ++k)
+        {
+          values.corners[k] = this->cornerValues(triangles, triangles.corners[t][k], n);
+        }
+        values.point = this->options_.arrays[n].rows->at(node);
+        values.components = this->options_.arrays[n].rows->components();
+        values.scale = this->arrayScales_[n];
+      }
+      minimumDistances(lanes, prepared, point, this->laneValues_.data(),
+        static_cast<int>(this->laneValues_.size()), nearest, this->errors_.data());
+      prepared += std::size_t{ kTriangleRows } * lanes;
+    }
+  }
+  raise(lanes, nearest, this->squares_.data());
+  raise(lanes, this->errors_.data(), this->squares_.data());
+}
+
+// The new cell that is nearest to a point over all steps.
+int TriQuadCost::homeOf(int beginCell, int endCell, const float* point)
+{
+  const int lanes = this->lanes_;
   int home = beginCell;
   float homeSquare = kInfinity;
   for (int cell = beginCell; cell < endCell; ++cell)
   {
-    const int begin = triangles.firsts[cell];
-    const int end = triangles.firsts[cell + 1];
-    if (begin == end)
+    const int count = this->newTriangles_.firsts[cell + 1] - this->newTriangles_.firsts[cell];
+    if (count == 0)
     {
       continue;
     }
-    float* squares = steer || endCell - beginCell == 1 ? nearest : this->cellNearest_.data();
     std::fill_n(this->cellNearest_.data(), lanes, kInfinity);
-    for (int t = begin; t < end; ++t)
-    {
-      const float* prepared = triangles.prepared.data() + std::size_t{ kTriangleRows } * lanes * t;
-      if (steer)
-      {
-        for (std::size_t n = 0; n < this->laneValues_.size(); ++n)
-        {
-          LaneValues& values = this->laneValues_[n];
-          for (int k = 0; k < 3; ++k)
-          {
-            values.corners[k] = this->cornerValues(triangles, triangles.corners[t][k], n);
-          }
-          values.point = this->options_.arrays[n].rows->at(node);
-          values.components = this->options_.arrays[n].rows->components();
-          values.scale = this->arrayScales_[n];
-        }
-        minimumDistances(lanes, prepared, point, this->laneValues_.data(),
-          static_cast<int>(this->laneValues_.size()), nearest, this->errors_.data());
-        minimumDistances(lanes, prepared, point, this->cellNearest_.data());
-      }
-      else
-      {
-        minimumDistances(lanes, prepared, point, squares);
-      }
-    }
-    const float square = largest(lanes, steer ? this->cellNearest_.data() : squares);
+    minimumDistances(lanes, this->preparedCell(this->newTriangles_, cell), count, point,
+      this->cellNearest_.data());
+    const float square = largest(lanes, this->cellNearest_.data());
     if (square < homeSquare)
     {
       homeSquare = square;
       home = cell;
     }
-    if (!steer && squares != nearest)
-    {
-      lower(lanes, squares, nearest);
-    }
-  }
-  raise(lanes, nearest, this->squares_.data());
-  if (steer)
-  {
-    raise(lanes, this->errors_.data(), this->squares_.data());
   }
   return home;
 }
@@ -695,51 +765,80 @@ Index TriQuadCost::cellBehind(const TriQuadPatch& patch, int fan, unsigned char 
   return behind;
 }
 
-// The nodes removed from the cells of a fan, and its own node, to the new cells.
-void TriQuadCost::measureRemoved(const TriQuadPatch& patch, int fan, unsigned char target)
+TriQuadCost::NewCells TriQuadCost::newCellsOf(const TriQuadPatch& patch, int fan) const
+{
+  NewCells cells{ 0, 0, false };
+  while (patch.fanOf[cells.begin] != fan)
+  {
+    ++cells.begin;
+  }
+  cells.end = cells.begin;
+  while (cells.end < patch.cellCount && patch.fanOf[cells.end] == fan)
+  {
+    ++cells.end;
+  }
+  cells.vanish = this->newTriangles_.firsts[cells.begin] == this->newTriangles_.firsts[cells.end];
+  return cells;
+}
+
+// The node and those removed from its cells, to the new cells of their fans.
+void TriQuadCost::measureRemoved(const TriQuadPatch& patch, unsigned char target)
 {
   const int lanes = this->lanes_;
-  int begin = 0;
-  while (patch.fanOf[begin] != fan)
-  {
-    ++begin;
-  }
-  int end = begin;
-  while (end < patch.cellCount && patch.fanOf[end] == fan)
-  {
-    ++end;
-  }
-  const bool vanishes = this->newTriangles_.firsts[begin] == this->newTriangles_.firsts[end];
-  const Index behind = vanishes ? this->cellBehind(patch, fan, target) : kNone;
   const float* edge[2] = { this->position(target),
     this->position(patch.line[0] == target ? patch.line[1] : patch.line[0]) };
-  const auto measureCopy = [&](Index copy, const float* point)
+  std::size_t next = 0; // of removed_, which are in the order of the cells
+  for (int fan = 0; fan < patch.fanCount; ++fan)
   {
-    Index home = behind;
-    if (vanishes)
+    const NewCells cells = this->newCellsOf(patch, fan);
+    const auto measureOne = [&](const float* point, int firstCell, Index node)
     {
-      maximumDistanceToEdge(lanes, edge[0], edge[1], point, this->squares_.data());
-    }
-    else
+      if (cells.vanish)
+      {
+        maximumDistanceToEdge(lanes, edge[0], edge[1], point, this->squares_.data());
+      }
+      else if (!this->laneValues_.empty())
+      {
+        this->measureNode(cells.begin, cells.end, point, node);
+      }
+      else
+      {
+        this->measurePoint(this->newTriangles_, cells.begin, cells.end, firstCell, point);
+      }
+    };
+    measureOne(this->position(0), cells.begin, patch.node);
+    for (; next < this->removed_.size() && this->removed_[next].cell < cells.end; ++next)
     {
-      home = patch.slots[this->measurePoint(
-        this->newTriangles_, begin, end, point, this->topology_.nodeOf(copy))];
-    }
-    this->homes_.push_back({ copy, home });
-  };
-  measureCopy(patch.fans[fan].copy, this->position(0));
-  for (int i = begin; i < end; ++i)
-  {
-    for (Index copy = this->shared_->firstRemoved[patch.slots[i]]; copy != kNone;
-         copy = this->shared_->nextRemoved[copy])
-    {
-      subtract(lanes, 3, this->positions_.at(this->topology_.nodeOf(copy)),
-        this->positions_.at(patch.node), this->point_.data());
-      measureCopy(copy, this->point_.data());
       if (this->isTooFar())
       {
         return;
       }
+      measureOne(this->position(patch.ringSize + 1 + static_cast<int>(next)),
+        this->removed_[next].cell, this->topology_.nodeOf(this->removed_[next].copy));
+    }
+  }
+}
+
+void TriQuadCost::findHomes(TriQuadPatch& patch)
+{
+  this->estimated_ = nullptr;
+  this->patch_ = &patch;
+  this->gatherRows(patch);
+  this->gatherRemoved(patch);
+  this->addNewCells(patch, patch.target);
+  patch.homes.clear();
+  std::size_t next = 0;
+  for (int fan = 0; fan < patch.fanCount; ++fan)
+  {
+    const NewCells cells = this->newCellsOf(patch, fan);
+    const Index behind = cells.vanish ? this->cellBehind(patch, fan, patch.target) : kNone;
+    const auto homeOfCopy = [&](const float* point)
+    { return cells.vanish ? behind : patch.slots[this->homeOf(cells.begin, cells.end, point)]; };
+    patch.homes.push_back({ patch.fans[fan].copy, homeOfCopy(this->position(0)) });
+    for (; next < this->removed_.size() && this->removed_[next].cell < cells.end; ++next)
+    {
+      patch.homes.push_back({ this->removed_[next].copy,
+        homeOfCopy(this->position(patch.ringSize + 1 + static_cast<int>(next))) });
     }
   }
 }
@@ -789,8 +888,43 @@ void TriQuadCost::measureNewEdges(const TriQuadPatch& patch, unsigned char targe
     [&](unsigned char other, int begin, int end)
     {
       middle(this->lanes_, this->position(target), this->position(other), this->point_.data());
-      this->measurePoint(this->oldTriangles_, begin, end, this->point_.data(), kNone);
+      int first = begin;
+      while (std::find(patch.cells[first].begin(), patch.cells[first].end(), other) ==
+        patch.cells[first].end())
+      {
+        ++first;
+      }
+      this->measurePoint(this->oldTriangles_, begin, end, first, this->point_.data());
     });
+}
+
+// The node of a row of relative_.
+Index TriQuadCost::nodeOfPlace(int place) const
+{
+  const TriQuadPatch& patch = *this->patch_;
+  if (place <= patch.ringSize)
+  {
+    return place == 0 ? patch.node : patch.ring[place - 1];
+  }
+  return this->topology_.nodeOf(this->removed_[place - patch.ringSize - 1].copy);
+}
+
+// The number of one of the input's cells in originals_.
+int TriQuadCost::originalNumber(Index cell)
+{
+  auto& all = this->originals_;
+  int& slot = this->originalSlots_[cell % this->originalSlots_.size()];
+  if (slot >= static_cast<int>(all.size()) || all[slot].cell != cell)
+  {
+    const auto found =
+      std::find_if(all.begin(), all.end(), [cell](const Original& o) { return o.cell == cell; });
+    slot = static_cast<int>(found - all.begin());
+    if (found == all.end())
+    {
+      all.push_back({ cell, 0, false });
+    }
+  }
+  return slot;
 }
 
 // The input's cells around a node join nearestOriginals_.
@@ -799,10 +933,11 @@ void TriQuadCost::addOriginals(Index node)
   const auto end = node == kNone ? 0 : this->shared_->firstOriginal[node + 1];
   for (Index k = node == kNone ? 0 : this->shared_->firstOriginal[node]; k < end; ++k)
   {
-    auto& cells = this->nearestOriginals_;
-    if (std::find(cells.begin(), cells.end(), this->shared_->originalsOf[k]) == cells.end())
+    const int number = this->originalNumber(this->shared_->originalsOf[k]);
+    if (this->originals_[number].sample != this->sample_)
     {
-      cells.push_back(this->shared_->originalsOf[k]);
+      this->originals_[number].sample = this->sample_;
+      this->nearestOriginals_.push_back(number);
     }
   }
 }
@@ -816,8 +951,9 @@ void TriQuadCost::measureSampleBack(const float* point)
     return;
   }
   const int lanes = this->lanes_;
-  nearestPoints(lanes, this->places_.data(), static_cast<int>(this->placeNodes_.size()), point,
-    this->nearestPlaces_.data());
+  const int places = this->patch_->ringSize + 1 + static_cast<int>(this->removed_.size());
+  nearestPoints(lanes, this->relative_.data(), places, point, this->nearestPlaces_.data());
+  ++this->sample_;
   this->nearestOriginals_.clear();
   for (auto place = this->nearestPlaces_.begin(); place != this->nearestPlaces_.end(); ++place)
   {
@@ -825,7 +961,7 @@ void TriQuadCost::measureSampleBack(const float* point)
     {
       continue;
     }
-    this->addOriginals(this->placeNodes_[*place]);
+    this->addOriginals(this->nodeOfPlace(*place));
   }
   std::fill_n(this->nearest_.data(), lanes, kInfinity);
   std::size_t measured = 0;
@@ -835,6 +971,10 @@ void TriQuadCost::measureSampleBack(const float* point)
     for (std::size_t i = measured; i < count; ++i)
     {
       this->measureOriginal(this->nearestOriginals_[i], point);
+      if (isAtMost(lanes, this->nearest_.data(), this->squares_.data()))
+      {
+        return;
+      }
     }
     if (round == kRoundsBack ||
       largest(lanes, this->nearest_.data()) <= largest(lanes, this->squares_.data()))
@@ -844,8 +984,8 @@ void TriQuadCost::measureSampleBack(const float* point)
     // The nodes nearest to it may have gone from cells of other patches.
     for (std::size_t i = measured; i < count; ++i)
     {
-      const Index* nodes =
-        this->mesh_.cells + std::size_t{ kTriQuadCorners } * this->nearestOriginals_[i];
+      const Index* nodes = this->mesh_.cells +
+        std::size_t{ kTriQuadCorners } * this->originals_[this->nearestOriginals_[i]].cell;
       std::for_each(
         nodes, nodes + kTriQuadCorners, [this](Index node) { this->addOriginals(node); });
     }
@@ -854,18 +994,17 @@ void TriQuadCost::measureSampleBack(const float* point)
   raise(lanes, this->nearest_.data(), this->squares_.data());
 }
 
-// The distance of a point to an original cell joins nearest_.
-void TriQuadCost::measureOriginal(Index cell, const float* point)
+// The distance of a point to one of originals_ joins nearest_.
+void TriQuadCost::measureOriginal(int number, const float* point)
 {
   const auto lanes = static_cast<std::size_t>(this->lanes_);
-  const auto found = std::find(this->preparedCells_.begin(), this->preparedCells_.end(), cell);
-  const std::size_t number = found - this->preparedCells_.begin();
   const std::size_t size = lanes * kTriangleRows * kTriQuadCorners;
-  const Index* nodes = this->mesh_.cells + std::size_t{ kTriQuadCorners } * cell;
+  Original& original = this->originals_[number];
+  const Index* nodes = this->mesh_.cells + std::size_t{ kTriQuadCorners } * original.cell;
   const int triangles = nodes[kTriQuadCorners - 1] == kNone ? 1 : kTriQuadCorners;
-  if (found == this->preparedCells_.end())
+  if (!original.ready)
   {
-    this->preparedCells_.push_back(cell);
+    original.ready = true;
     this->preparedRows_.resize(std::max(this->preparedRows_.size(), size * (number + 1)));
     const float* rows[kTriQuadCorners + 1];
     const int count = triangles == 1 ? 3 : kTriQuadCorners;
@@ -889,12 +1028,8 @@ void TriQuadCost::measureOriginal(Index cell, const float* point)
         this->preparedRows_.data() + size * number + lanes * kTriangleRows * k);
     }
   }
-  for (int k = 0; k < triangles; ++k)
-  {
-    minimumDistances(this->lanes_,
-      this->preparedRows_.data() + size * number + lanes * kTriangleRows * k, point,
-      this->nearest_.data());
-  }
+  minimumDistances(this->lanes_, this->preparedRows_.data() + size * number, triangles, point,
+    this->nearest_.data());
 }
 
 // The distance of the new cells to the original ones joins squares_: at points of new edges and
@@ -902,18 +1037,6 @@ void TriQuadCost::measureOriginal(Index cell, const float* point)
 void TriQuadCost::measureBack(const TriQuadPatch& patch, unsigned char target)
 {
   const int lanes = this->lanes_;
-  const std::size_t size = std::size_t{ 3 } * lanes;
-  this->placeNodes_.assign(patch.ring.begin(), patch.ring.begin() + patch.ringSize);
-  for (const TriQuadPatch::Home& home : this->homes_)
-  {
-    this->placeNodes_.push_back(this->topology_.nodeOf(home.copy));
-  }
-  this->places_.resize(std::max(this->places_.size(), size * this->placeNodes_.size()));
-  for (std::size_t i = 0; i < this->placeNodes_.size(); ++i)
-  {
-    subtract(lanes, 3, this->positions_.at(this->placeNodes_[i]), this->positions_.at(patch.node),
-      this->places_.data() + size * i);
-  }
   this->forNewEdges(patch, target,
     [&](unsigned char other, int /*begin*/, int /*end*/)
     {
@@ -981,46 +1104,29 @@ bool TriQuadCost::isTooFar() const
     this->limit_<kInfinity&& this->combine(this->squares_.data())> this->limit_;
 }
 
-// The criterion Deviation for one target, as far as it is below limit_; the squares stay in
-// squares_.
-double TriQuadCost::measure(const TriQuadPatch& patch, unsigned char target, bool back)
+// The criterion Deviation for one target but for the way back into squares_, as far as it is below
+// limit_.
+void TriQuadCost::measure(const TriQuadPatch& patch, unsigned char target)
 {
   std::fill(this->squares_.begin(), this->squares_.end(), 0.0F);
   if (patch.folds)
   {
     this->measureFolds(patch, target);
   }
-  this->homes_.clear();
-  this->newTriangles_.clear();
   if (patch.line[0] != 0)
   {
     this->measureLine(patch, target);
   }
   if (!this->isTooFar())
   {
-    this->measureNewEdges(patch, target);
+    this->addNewCells(patch, target);
+    this->measureRemoved(patch, target);
   }
+  // Most edges are nearer to the old cells than the removed nodes to the new ones.
   if (!this->isTooFar())
   {
-    for (int i = 0; i < patch.cellCount; ++i)
-    {
-      std::array<unsigned char, 4> cell;
-      if (patch.newCell(i, target, cell) == 0)
-      {
-        cell.fill(kNoLocal);
-      }
-      this->addCell(cell.data(), this->newTriangles_);
-    }
-    for (int f = 0; f < patch.fanCount; ++f)
-    {
-      this->measureRemoved(patch, f, target);
-    }
+    this->measureNewEdges(patch, target);
   }
-  if (back && !this->isTooFar())
-  {
-    this->measureBack(patch, target);
-  }
-  return this->combine(this->squares_.data());
 }
 
 // The quadrics' distance for one target.
@@ -1049,16 +1155,7 @@ bool TriQuadCost::hasMore(const TriQuadPatch& patch) const
   {
     return true;
   }
-  int removed = 0;
-  for (int i = 0; i < patch.cellCount && removed < kRemovedForFull; ++i)
-  {
-    for (Index copy = this->shared_->firstRemoved[patch.slots[i]]; copy != kNone;
-         copy = this->shared_->nextRemoved[copy])
-    {
-      ++removed;
-    }
-  }
-  return removed >= kRemovedForFull;
+  return patch.removedCount >= kRemovedForFull;
 }
 
 void TriQuadCost::addOldCells(const TriQuadPatch& patch)
@@ -1070,7 +1167,27 @@ void TriQuadCost::addOldCells(const TriQuadPatch& patch)
   }
 }
 
-bool TriQuadCost::evaluate(Index node, Effort effort, TriQuadPatch& patch)
+void TriQuadCost::addNewCells(const TriQuadPatch& patch, unsigned char target)
+{
+  this->newTriangles_.clear();
+  for (int i = 0; i < patch.cellCount; ++i)
+  {
+    std::array<unsigned char, 4> cell;
+    if (patch.newCell(i, target, cell) == 0)
+    {
+      cell.fill(kNoLocal);
+    }
+    this->addCell(cell.data(), this->newTriangles_);
+  }
+}
+
+bool TriQuadCost::isAllowed(TriQuadPatch& patch, unsigned char target)
+{
+  return this->mayGo(patch, target) && (patch.folds || this->keepsCells(patch, target));
+}
+
+// Gather a patch and find the first target that is allowed; false if there is none.
+bool TriQuadCost::findFirstTarget(Index node, TriQuadPatch& patch)
 {
   this->patch_ = &patch;
   patch.folds = false;
@@ -1079,31 +1196,37 @@ bool TriQuadCost::evaluate(Index node, Effort effort, TriQuadPatch& patch)
     return false;
   }
   this->rankTargets(patch);
-  const auto isAllowed = [&](int i)
+  this->firstTarget_ = 0;
+  while (this->firstTarget_ < this->targetCount_ &&
+    !this->isAllowed(patch, this->targets_[this->firstTarget_].local))
   {
-    const unsigned char target = this->targets_[i].local;
-    return this->mayGo(patch, target) && (patch.folds || this->keepsCells(patch, target));
-  };
-  int first = 0;
-  while (first < this->targetCount_ && !isAllowed(first))
-  {
-    ++first;
+    ++this->firstTarget_;
   }
-  const bool deviation = this->options_.criterion == TriQuadCriterion::Deviation;
-  const bool full = deviation && effort == Effort::Full;
-  if (first == this->targetCount_)
+  if (this->firstTarget_ == this->targetCount_)
   {
     this->rankFolds(patch);
-    if (!deviation || this->targetCount_ == 0)
+    if (this->options_.criterion != TriQuadCriterion::Deviation || this->targetCount_ == 0)
     {
       return false;
     }
-    first = 0;
+    this->firstTarget_ = 0;
     patch.folds = true;
   }
-  patch.target = this->targets_[first].local;
-  patch.cost = this->targets_[first].rank;
-  if (!deviation)
+  patch.target = this->targets_[this->firstTarget_].local;
+  patch.cost = this->targets_[this->firstTarget_].rank;
+  return true;
+}
+
+bool TriQuadCost::evaluate(Index node, Effort effort, TriQuadPatch& patch)
+{
+  const bool full = effort == Effort::Full;
+  const bool goesOn = full && this->estimated_ == &patch && patch.node == node;
+  this->estimated_ = nullptr;
+  if (!goesOn && !this->findFirstTarget(node, patch))
+  {
+    return false;
+  }
+  if (this->options_.criterion != TriQuadCriterion::Deviation)
   {
     patch.error = this->quadricError(patch, patch.target);
     return true;
@@ -1113,41 +1236,61 @@ bool TriQuadCost::evaluate(Index node, Effort effort, TriQuadPatch& patch)
     patch.error = patch.cost - this->options_.quadWeight * patch.quadsLost(patch.target);
     return true;
   }
-  this->preparedCells_.clear();
-  this->addOldCells(patch);
+  if (!goesOn)
+  {
+    this->originals_.clear();
+    this->gatherRemoved(patch);
+    patch.removedCount = static_cast<int>(this->removed_.size());
+    this->addOldCells(patch);
+  }
   const int wanted = full ? this->options_.candidates : 1;
   patch.cost = std::numeric_limits<double>::infinity();
   std::array<Index, TriQuadPatch::kMaximumFans> bestCopies{};
   int compared = 0;
-  for (int i = first; i < this->targetCount_ && compared < wanted; ++i)
+  for (int i = this->firstTarget_; i < this->targetCount_ && compared < wanted; ++i)
   {
+    const unsigned char target = this->targets_[i].local;
     // Of the first one it is known, and its copies were found.
-    if ((i > first || patch.folds) && !isAllowed(i))
+    const bool isFirst = i == this->firstTarget_;
+    if ((!isFirst || patch.folds) && !this->isAllowed(patch, target))
     {
       continue;
     }
-    const unsigned char target = this->targets_[i].local;
     const double extra = this->options_.quadWeight * patch.quadsLost(target);
     this->limit_ = patch.cost - extra;
-    const double error = this->measure(patch, target, full);
+    if (isFirst && goesOn)
+    {
+      this->squares_ = patch.squares;
+    }
+    else
+    {
+      this->measure(patch, target);
+    }
+    if (full && !this->isTooFar())
+    {
+      this->measureBack(patch, target);
+    }
+    const double error = this->combine(this->squares_.data());
     if (error + extra < patch.cost)
     {
       patch.target = target;
       patch.error = error;
       patch.cost = error + extra;
       bestCopies = patch.targetCopies;
-      patch.homes.swap(this->homes_);
       patch.squares = this->squares_;
     }
     ++compared;
   }
   patch.targetCopies = bestCopies;
   // Infinite where all new cells are without area at some step.
-  return patch.cost < std::numeric_limits<double>::infinity();
+  const bool mayGo = patch.cost < std::numeric_limits<double>::infinity();
+  this->estimated_ = mayGo && !full ? &patch : nullptr;
+  return mayGo;
 }
 
 void TriQuadCost::collapsed(const TriQuadPatch& patch)
 {
+  this->estimated_ = nullptr;
   const Index target = patch.ring[patch.target - 1];
   subtract(this->lanes_, 3, this->positions_.at(target), this->positions_.at(patch.node),
     this->point_.data());
@@ -1249,7 +1392,7 @@ std::vector<double> TriQuadCost::distances(const TimeRows& positions) const
       for (std::size_t i = 0; i < samples; ++i)
       {
         minimumDistances(
-          lanes, prepared.data(), points.data() + 3 * lanes * i, squares.data() + lanes * i);
+          lanes, prepared.data(), 1, points.data() + 3 * lanes * i, squares.data() + lanes * i);
       }
     }
     for (std::size_t i = 0; i < samples; ++i)

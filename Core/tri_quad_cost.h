@@ -48,6 +48,7 @@ struct TriQuadPatch
   unsigned char target = 0; ///< local number of the node that it goes to
   double error = 0.0;       ///< of the step, as a fraction of the diagonal
   bool folds = false;       ///< a cell, for no neighbour is there that it does not
+  int removedCount = 0;     ///< copies that lie in its cells; Deviation only
   double cost = 0.0;        ///< with the weight of the quads: what the queue goes by
 
   /// The copies of the target, one for each fan.
@@ -59,7 +60,7 @@ struct TriQuadPatch
     Index copy;
     Index slot;
   };
-  std::vector<Home> homes;    ///< once the node has gone; Deviation only
+  std::vector<Home> homes;    ///< once the node has gone: see TriQuadCost::findHomes()
   std::vector<float> squares; ///< of the errors, of each lane; Deviation only
 
   /// A cell after the node has gone to a target.
@@ -94,7 +95,7 @@ public:
     Full      ///< of several neighbours, with the distance from the new cells to the original ones
   };
 
-  /// Find where a node goes best.
+  /// Find where a node goes best. Full effort right behind an estimate of the patch goes on there.
   /// @param effort Full is for Deviation only; the Quadrics know no other than Estimate
   /// @return false if it cannot go anywhere; the patch is then not to be used
   /// It reads cells, quadrics and removed nodes at the node and its ring only, and how many nodes
@@ -105,8 +106,10 @@ public:
   /// as long as few nodes were removed from it and nothing folds.
   bool hasMore(const TriQuadPatch& patch) const;
 
-  /// Take note that the collapse of a patch that was evaluated is made. Call before the topology
-  /// changes.
+  /// Find the cells that the removed copies of an evaluated patch will lie in. Deviation only.
+  void findHomes(TriQuadPatch& patch);
+
+  /// Take note that the collapse of a patch with homes is made. Call before the topology changes.
   void collapsed(const TriQuadPatch& patch);
 
   /// Distance of the removed nodes to the cells that they lie in now, the largest at each step of
@@ -129,9 +132,13 @@ private:
   }
   void buildQuadrics();
   bool gather(Index node, TriQuadPatch& patch);
+  void gatherRows(const TriQuadPatch& patch);
+  void gatherRemoved(const TriQuadPatch& patch);
   bool findLine(TriQuadPatch& patch) const;
   void rankTargets(const TriQuadPatch& patch);
   bool mayGo(TriQuadPatch& patch, unsigned char target);
+  bool isAllowed(TriQuadPatch& patch, unsigned char target);
+  bool findFirstTarget(Index node, TriQuadPatch& patch);
   template <typename Use>
   bool forChangedCells(const TriQuadPatch& patch, unsigned char target, Use&& use) const;
   bool keepsCells(const TriQuadPatch& patch, unsigned char target) const;
@@ -139,8 +146,9 @@ private:
   void rankFolds(TriQuadPatch& patch);
   double combine(const float* squares) const;
   double quadricError(const TriQuadPatch& patch, unsigned char target);
-  double measure(const TriQuadPatch& patch, unsigned char target, bool back);
+  void measure(const TriQuadPatch& patch, unsigned char target);
   void addOldCells(const TriQuadPatch& patch);
+  void addNewCells(const TriQuadPatch& patch, unsigned char target);
   bool isTooFar() const;
   void measureLine(const TriQuadPatch& patch, unsigned char target);
   void measureNewEdges(const TriQuadPatch& patch, unsigned char target);
@@ -150,14 +158,17 @@ private:
   void measureBack(const TriQuadPatch& patch, unsigned char target);
   void measureHalfwayBack(const float* corner);
   void measureSampleBack(const float* point);
+  Index nodeOfPlace(int place) const;
+  int originalNumber(Index cell);
   void addOriginals(Index node);
-  void measureOriginal(Index cell, const float* point);
+  void measureOriginal(int number, const float* point);
 
   // Cells of the patch, cut into triangles: quads around their centers.
   struct Triangles
   {
     std::vector<std::array<int, 3>> corners; // local numbers; kCenters + i is center i
     std::vector<int> firsts;                 // first triangle of each cell, and the end
+    std::vector<bool> ready;                 // whether a cell is prepared
     std::vector<float> prepared;             // for distances
     std::vector<float> centers;
     std::vector<float> centerValues; // of all arrays
@@ -167,11 +178,22 @@ private:
   };
   static constexpr int kCenters = 256;
   void addCell(const unsigned char* cell, Triangles& triangles);
+  const float* preparedCell(Triangles& triangles, int cell);
   const float* cornerPosition(const Triangles& triangles, int corner) const;
   const float* cornerValues(const Triangles& triangles, int corner, std::size_t array) const;
-  int measurePoint(
-    const Triangles& triangles, int beginCell, int endCell, const float* point, Index node);
-  void measureRemoved(const TriQuadPatch& patch, int fan, unsigned char target);
+  void measurePoint(
+    Triangles& triangles, int beginCell, int endCell, int firstCell, const float* point);
+  void measureNode(int beginCell, int endCell, const float* point, Index node);
+  int homeOf(int beginCell, int endCell, const float* point);
+  // New cells of a fan: places in the patch.
+  struct NewCells
+  {
+    int begin;
+    int end;
+    bool vanish; // all of them
+  };
+  NewCells newCellsOf(const TriQuadPatch& patch, int fan) const;
+  void measureRemoved(const TriQuadPatch& patch, unsigned char target);
   Index cellBehind(const TriQuadPatch& patch, int fan, unsigned char target) const;
   Index firstOnLine(Index a, Index b) const;
 
@@ -204,7 +226,13 @@ private:
 
   // The patch at hand.
   const TriQuadPatch* patch_ = nullptr;
-  std::vector<float> relative_; // positions less the node's, by local number
+  std::vector<float> relative_; // positions less the node's, by local number; then removed_
+  struct Removed
+  {
+    Index copy;
+    int cell; // that it lies in: place in the patch
+  };
+  std::vector<Removed> removed_;
   struct Target
   {
     unsigned char local;
@@ -212,6 +240,8 @@ private:
   };
   std::array<Target, kMaximumRing> targets_;
   int targetCount_ = 0;
+  int firstTarget_ = 0;                     // that is allowed
+  const TriQuadPatch* estimated_ = nullptr; // the patch at hand, if it can be measured further
   Triangles oldTriangles_;
   Triangles newTriangles_;
   std::vector<LaneValues> laneValues_;
@@ -222,15 +252,20 @@ private:
   std::vector<float> errors_;
   std::vector<float> squares_; // largest over all samples
   double limit_ = 0.0;         // of the error: a target beyond it is not measured to the end
-  std::vector<TriQuadPatch::Home> homes_; // of the target measured last
   // For the way back to the original cells.
-  std::vector<Index> placeNodes_;       // the nodes of the patch and those removed from it
-  std::vector<float> places_;           // their positions
-  std::vector<int> nearestPlaces_;      // at each step
-  std::vector<Index> nearestOriginals_; // cells
-  std::vector<float> cellRows_;         // corners and center of one
-  std::vector<Index> preparedCells_;    // those at hand
-  std::vector<float> preparedRows_;     // their triangles
+  std::vector<int> nearestPlaces_; // at each step
+  struct Original
+  {
+    Index cell;
+    std::uint32_t sample; // that it was near last
+    bool ready;           // prepared
+  };
+  std::vector<Original> originals_;      // those that were near the patch
+  std::array<int, 256> originalSlots_{}; // where one may be, by the lowest digits
+  std::vector<int> nearestOriginals_;    // numbers in originals_
+  std::vector<float> cellRows_;          // corners and center of one
+  std::vector<float> preparedRows_;      // triangles of originals_
+  std::uint32_t sample_ = 0;
 };
 
 } // namespace undecimate

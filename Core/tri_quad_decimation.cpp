@@ -124,6 +124,10 @@ public:
         tooCostly = true;
         continue;
       }
+      if (!evaluation.settled)
+      {
+        this->settle(this->cost_, evaluation);
+      }
       this->remove(evaluation.patch, builder);
       this->reinsertRing(evaluation.patch, queue, interval);
     }
@@ -160,6 +164,7 @@ private:
     bool mayGo = false;
     bool hasMore = false; // the full effort is worth it,
     bool full = false;    // and has been made
+    bool settled = false; // it is known where the removed nodes will lie
     Index estimated = 0;  // interval
     TriQuadPatch patch;
   };
@@ -173,6 +178,7 @@ private:
   {
     evaluation.node = node;
     evaluation.full = false;
+    evaluation.settled = false;
     evaluation.mayGo = cost.evaluate(node, TriQuadCost::Effort::Estimate, evaluation.patch);
     evaluation.hasMore = evaluation.mayGo && cost.hasMore(evaluation.patch);
     evaluation.estimated = evaluation.mayGo ? intervalOf(evaluation.patch) : kNone;
@@ -182,6 +188,15 @@ private:
   {
     evaluation.mayGo = cost.evaluate(node, TriQuadCost::Effort::Full, evaluation.patch);
     evaluation.full = true;
+  }
+
+  void settle(TriQuadCost& cost, Evaluation& evaluation) const
+  {
+    if (this->options_.criterion == TriQuadCriterion::Deviation)
+    {
+      cost.findHomes(evaluation.patch);
+    }
+    evaluation.settled = true;
   }
 
   TriQuadCost& costOf(int thread)
@@ -338,9 +353,17 @@ private:
         TriQuadCost& cost = this->costOf(thread);
         evaluation.removals = this->removals_;
         estimate(cost, unknown[job], evaluation);
-        if (evaluation.hasMore && evaluation.estimated <= highest)
+        if (!evaluation.mayGo || evaluation.estimated > highest)
+        {
+          return;
+        }
+        if (evaluation.hasMore)
         {
           finish(cost, unknown[job], evaluation);
+        }
+        if (evaluation.mayGo && intervalOf(evaluation.patch) <= highest)
+        {
+          this->settle(cost, evaluation);
         }
       });
   }

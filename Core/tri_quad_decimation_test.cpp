@@ -256,7 +256,7 @@ TEST(TriQuadDecimation, ErrorsCoverTheRemovedNodes)
         prepareTriangle(rows.lanes(), rows.at(corners[k]),
           rows.at(corners[(k + 1) % corners.size()]),
           corners.size() == 3 ? rows.at(corners[2]) : middle.data(), triangle.data());
-        minimumDistances(rows.lanes(), triangle.data(), rows.at(node), squares.data());
+        minimumDistances(rows.lanes(), triangle.data(), 1, rows.at(node), squares.data());
       }
     }
     for (std::size_t step = 0; step < largest.size(); ++step)
@@ -303,7 +303,7 @@ std::vector<float> squaresOfTheWayBack(const MixedMesh& mesh, const Cells& level
     std::vector<float> squares(lanes, std::numeric_limits<float>::infinity());
     for (std::size_t t = 0; t < triangles.size(); t += kTriangleRows * lanes)
     {
-      minimumDistances(rows.lanes(), triangles.data() + t, place, squares.data());
+      minimumDistances(rows.lanes(), triangles.data() + t, 1, place, squares.data());
     }
     raise(rows.lanes(), squares.data(), largestSquares.data());
   };
