@@ -305,6 +305,15 @@ void middle(
   }
 }
 
+void pointBetween(int lanes, const float* __restrict__ a, const float* __restrict__ b,
+  float fraction, float* __restrict__ point)
+{
+  for (int i = 0; i < 3 * lanes; ++i)
+  {
+    point[i] = (1.0F - fraction) * a[i] + fraction * b[i];
+  }
+}
+
 void center(int lanes, int rows, const float* __restrict__ a, const float* __restrict__ b,
   const float* __restrict__ c, const float* __restrict__ d, float* __restrict__ mean)
 {

@@ -55,6 +55,9 @@ void subtract(int lanes, int rows, const float* a, const float* b, float* differ
 /// mean = 0.5 (a + b) of two points.
 void middle(int lanes, const float* a, const float* b, float* mean);
 
+/// point = (1 - fraction) a + fraction b of two points.
+void pointBetween(int lanes, const float* a, const float* b, float fraction, float* point);
+
 /// The mean of four rows of any number.
 void center(
   int lanes, int rows, const float* a, const float* b, const float* c, const float* d, float* mean);
