@@ -46,6 +46,8 @@ inline void prefetch(const void* address)
 {
 #if defined(__GNUC__) || defined(__clang__)
   __builtin_prefetch(address);
+  // The compiler drops the call of a function that does nothing but prefetch, unless it does this.
+  __asm__ volatile("" : : "r"(address));
 #elif defined(_M_X64)
   _mm_prefetch(static_cast<const char*>(address), _MM_HINT_T0);
 #else
