@@ -334,7 +334,11 @@ double DeviationCriterion::Internals::betweenSquare(
   {
     return square;
   }
-  this->triangles.set(this->ring.data(), filling);
+  // Without arrays the best filling of a small hole is the one that was measured last.
+  if (this->useArrays || hole.size == 2 || hole.size > kMaximumCompared)
+  {
+    this->triangles.set(this->ring.data(), filling);
+  }
   grow(this->nearestTriangles, this->between.count + kRowBlock);
   // Most lie over a new triangle and near enough.
   this->triangles.markNear(

@@ -47,7 +47,7 @@ inline int tripleNumber(const Triple& t)
   return t[2] * (t[2] - 1) * (t[2] - 2) / 6 + pairNumber(t[0], t[1]);
 }
 
-/// Memory: 55 KiB, of which a hole of six nodes uses 3.
+/// Memory: 56 KiB, of which a hole of six nodes uses 3.
 class HoleCandidates
 {
 public:
