@@ -286,12 +286,6 @@ Outcome checkOptions(const HashQueueDecimationOptions& options)
   {
     return invalid("ShapeWeight", options.shapeWeight, "0 or more, and finite");
   }
-  if (options.parallel && options.criterion == Criterion::Quadric)
-  {
-    return { Status::InvalidArgument,
-      "The criterion Quadric works with one thread. Switch Parallel off, or choose another "
-      "criterion." };
-  }
   if (options.targetNodes < 0)
   {
     return invalid("TargetNodes", static_cast<double>(options.targetNodes), "0 or more");
@@ -391,14 +385,11 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
   const auto decimateBy = [&](auto&& criterion)
   {
     using CriterionType = std::decay_t<decltype(criterion)>;
-    if constexpr (!std::is_same_v<CriterionType, QuadricCriterion>)
+    if (options.parallel)
     {
-      if (options.parallel)
-      {
-        return ParallelDecimation<CriterionType>(
-          topology, criterion, options, goal, monitor, *threads)
-          .run(result);
-      }
+      return ParallelDecimation<CriterionType>(
+        topology, criterion, options, goal, monitor, *threads)
+        .run(result);
     }
     return Decimation<CriterionType>(topology, criterion, options, goal, monitor).run(result);
   };

@@ -71,7 +71,7 @@ struct HashQueueDecimationOptions
   double shapeWeight = 0.0;
 
   /// Decimate by several threads (parallel_decimation.h). The result is not that of the serial
-  /// algorithm, but about as good, and does not depend on the number of threads. Not with Quadric.
+  /// algorithm, but about as good, and does not depend on the number of threads.
   bool parallel = false;
   int threads = 0; ///< with `parallel`; 0 = as many as cores
 
@@ -123,7 +123,7 @@ struct HashQueueDecimationResult
 /// @param[out] result complete on Ok, empty otherwise
 /// Complexity: O(nodes); Deviation O(nodes log(nodes / nodes left)).
 /// Memory: bytes a node at the largest moment, the result included: 160 with the means, 165 with
-/// Quadric, 215 with Deviation, and 4 to 18 more with `parallel` (memory.md).
+/// Quadric, 215 with Deviation, and 4 to 30 more with `parallel` (memory.md).
 /// Threads: the monitor is asked in the caller's thread only.
 /// Throws nothing: exceptions of the monitor's callback end the call as Cancelled.
 Outcome decimate(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,

@@ -20,6 +20,7 @@
 #include "mesh_parts.h"
 #include "monitor.h"
 #include "node_removal.h"
+#include "quadric_criterion.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -29,13 +30,14 @@
 #include <functional>
 #include <memory>
 #include <queue>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace undecimate
 {
 
-/// @tparam CriterionType see deviation.h and mean_edge_criterion.h
+/// @tparam CriterionType see deviation.h, mean_edge_criterion.h and quadric_criterion.h
 template <typename CriterionType>
 class ParallelDecimation
 {
@@ -43,6 +45,7 @@ public:
   ParallelDecimation(TriangleTopology& topology, CriterionType& criterion,
     const HashQueueDecimationOptions& options, const Goal& goal, Monitor& monitor, Threads& threads)
     : topology_(topology)
+    , criterion_(criterion)
     , options_(options)
     , goal_(goal)
     , monitor_(monitor)
@@ -132,6 +135,10 @@ public:
       result.stopReason = StopReason::MaximumError;
     }
     release(done);
+    if constexpr (kIsQuadric)
+    {
+      this->criterion_.release();
+    }
     release(this->places_);
     parts.release();
     result.record = recordOf(this->topology_, this->removed_, this->options_.trackCellSources,
@@ -141,6 +148,8 @@ public:
   }
 
 private:
+  static constexpr bool kIsQuadric = std::is_same_v<CriterionType, QuadricCriterion>;
+
   // Places of nodes that are in no queue: the interval of their cost, kNone if they wait for a
   // neighbour to go or are kept for good, or
   static constexpr Index kGone = kNone - 1;
@@ -487,7 +496,21 @@ private:
       }
       const bool queued = queue.contains(node);
       Index place = this->places_[node];
-      if (worker.criterion.isLazy())
+      double expected = 0.0;
+      bool isExpected = false;
+      if constexpr (kIsQuadric)
+      {
+        isExpected = worker.criterion.expect(node, hole, expected);
+        if (!isExpected && queued)
+        {
+          continue;
+        }
+      }
+      if (isExpected)
+      {
+        place = this->intervals_->of(expected);
+      }
+      else if (worker.criterion.isLazy())
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
         place = queued ? queue.interval(node) : place == kNone ? interval : place;
@@ -607,6 +630,7 @@ private:
   }
 
   TriangleTopology& topology_;
+  CriterionType& criterion_;
   const HashQueueDecimationOptions& options_;
   const Goal& goal_;
   Monitor& monitor_;

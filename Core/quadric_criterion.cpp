@@ -70,7 +70,9 @@ Quadric Quadric::seenFrom(const Vector& p) const
 QuadricCriterion::QuadricCriterion(TriangleTopology& topology)
   : topology_(topology)
   , heightField_(topology)
-  , stored_(topology.nodeCount(), Stored{ 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F })
+  , memory_(std::make_shared<LargeArray<Stored, 2>>(
+      topology.nodeCount(), Stored{ 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F }))
+  , stored_(this->memory_->data())
 {
   const double diagonal = diagonalOf(topology);
   this->unit_ = diagonal > 0.0 ? 1.0 / diagonal : 0.0;

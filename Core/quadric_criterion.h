@@ -34,6 +34,7 @@
 #include "triangle_topology.h"
 
 #include <array>
+#include <memory>
 
 namespace undecimate
 {
@@ -79,6 +80,13 @@ public:
   /// @param topology with the positions of the nodes; their values and sums are ours from now on
   explicit QuadricCriterion(TriangleTopology& topology);
 
+  /// The same, for another thread: both may be used at the same time for nodes that share no node
+  /// of their rings.
+  QuadricCriterion forThread() const { return *this; }
+
+  /// As DeviationCriterion::setTrianglesLeft(); here they do not matter.
+  void setTrianglesLeft(Index /*count*/) {}
+
   /// Cost in the original mesh, whatever may be in the way; false if the node has no neighbour to
   /// go to. Once for each node, before it is in a queue. O(1).
   bool evaluate(Index node, double& cost) const;
@@ -99,8 +107,8 @@ public:
   /// known that would change it.
   bool expect(Index node, const Hole& hole, double& cost);
 
-  /// Give the memory back. Nothing may be called any more.
-  void release() { undecimate::release(this->stored_); }
+  /// Give the memory back, that of all threads. Nothing may be called any more.
+  void release() { undecimate::release(*this->memory_); }
 
   /// Ask for what evaluating a node reads here.
   void prefetch(Index node) const { undecimate::prefetch(&this->stored_[node]); }
@@ -131,7 +139,8 @@ private:
   TriangleTopology& topology_;
   HeightFieldDirection heightField_;
   double unit_ = 0.0; // 1 / diagonal
-  LargeArray<Stored, 2> stored_;
+  std::shared_ptr<LargeArray<Stored, 2>> memory_;
+  Stored* stored_;                                           // there
   std::array<Candidate, kMaximumPatchCells + 1> candidates_; // of the last retriangulate()
   int candidateCount_ = 0;
   Index heir_ = kNone; // the ring node that gets the quadric

@@ -148,8 +148,7 @@ public:
   /**
    * Decimate by several threads (NumberOfThreads). The mesh is decimated in parts whose seams move,
    * so the result is another one than that of one thread, but about as good; it does not depend on
-   * the number of threads. Meshes of a few thousand points are left to one thread. Not with
-   * QUADRIC, which is an error. Default is off.
+   * the number of threads. Meshes of a few thousand points are left to one thread. Default is off.
    */
   vtkSetMacro(Parallel, vtkTypeBool);
   vtkGetMacro(Parallel, vtkTypeBool);

@@ -221,6 +221,7 @@ int main(int argc, char* argv[])
   measure(grid, "Deviation", Criterion::Deviation, Way::Plain, 230);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::WithSources, 165);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Parallel, 172);
+  measure(grid, "Quadric", Criterion::Quadric, Way::Parallel, 205);
   measure(grid, "Deviation", Criterion::Deviation, Way::Parallel, 250);
   measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 3, 420);
   measureOverTime(grid, "Deviation", TriQuadCriterion::Deviation, 25, 1850);
