@@ -194,6 +194,7 @@ private:
   void reevaluate(Queue& queue, const Intervals& intervals, Index interval)
   {
     const Hole& hole = this->removal_.hole;
+    const bool isFar = this->goal_.isFar(this->trianglesLeft_);
     for (int i = 0; i < hole.size; ++i)
     {
       const Index node = hole.ring[i];
@@ -217,7 +218,9 @@ private:
       if (this->criterion_.isLazy())
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
-        queue.insert(node, queue.contains(node) ? queue.interval(node) : interval);
+        const bool queued = queue.contains(node);
+        const Index place = queued ? queue.interval(node) : interval;
+        queue.insert(node, queued && isFar ? std::max(place, intervals.risen(interval)) : place);
         continue;
       }
       double cost = 0.0;

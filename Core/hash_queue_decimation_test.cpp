@@ -1229,6 +1229,20 @@ TEST(Deviation, ThinPartsDoNotCollapse)
   }
 }
 
+TEST(Deviation, ARoughOrderFarFromTheGoalDoesNotMatterThere)
+{
+  const Mesh mesh = testing::hills(240, 240);
+  ASSERT_GT(mesh.triangleCount(), 110000);
+  HashQueueDecimationOptions options;
+  options.targetReduction = 0.98;
+  const Decimated rough(mesh, options);
+  options.maximumError = 1.0; // with which the order is always exact
+  const Decimated exact(mesh, options);
+  EXPECT_NE(rough.removed(), exact.removed());
+  EXPECT_NEAR(rough.result.error, exact.result.error, 0.05 * exact.result.error);
+  EXPECT_NEAR(rough.cursor.nodeCount(), exact.cursor.nodeCount(), 0.05 * exact.cursor.nodeCount());
+}
+
 TEST(Deviation, PlaceDoesNotMatter)
 {
   const Mesh mesh = testing::roundedTorus();

@@ -514,6 +514,10 @@ private:
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
         place = queued ? queue.interval(node) : place == kNone ? interval : place;
+        if (queued && this->goal_.isFar(this->trianglesLeft_))
+        {
+          place = std::max(place, this->intervals_->risen(interval));
+        }
       }
       else
       {

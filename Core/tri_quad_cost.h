@@ -202,6 +202,7 @@ private:
   const TriQuadDecimationOptions& options_;
   const std::vector<unsigned char>& kept_;
   int lanes_;
+  bool moves_; // more than one step
   const TriQuadMeshView& mesh_;
   std::vector<float> arrayScales_;
   std::vector<int> arrayOffsets_; // first row of each array among all, and the end
