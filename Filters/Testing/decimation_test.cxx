@@ -617,7 +617,8 @@ TEST(Decimation, ScalarsWithALargeOffsetSteerAsWell)
   };
   const double plain = errorWith(0.0, 1.0);
   EXPECT_GT(plain, 1e-4);
-  // Rounding may decide otherwise between neighbours that cost the same; powers of two do not round.
+  // Rounding may decide otherwise between neighbours that cost the same; powers of two do not
+  // round.
   EXPECT_NEAR(errorWith(101325.0, 0.01), plain, 0.2 * plain);
   EXPECT_NEAR(errorWith(0.0, std::ldexp(1.0, 100)), plain, 1e-6 * plain);
   EXPECT_NEAR(errorWith(0.0, std::ldexp(1.0, -100)), plain, 1e-6 * plain);
