@@ -8,6 +8,7 @@
 #   level        a change of level by 1 % at 1M nodes against memcpy: core, then the whole filter
 #   decimation   filter against filter at 1M nodes: vtkDecimatePro, vtkQuadricDecimation
 #   fast         Scalar Difference and Quadric against meshoptimizer, Deviation against vtkQuadricDecimation, 1M nodes
+#   threads      Parallel with one thread and with two, whole filter, 1M nodes
 #   limit        bytes a removal against the memory's bandwidth and latency
 #   deviation    Hausdorff distance at equal triangle counts over the data set
 #   field        the same against the whole field of decimators, into Benchmarks/results (the first time: hours)
@@ -20,7 +21,7 @@
 #                whole filter, into Benchmarks/results (needs CGAL); static, dynamic, ... behind it: only these
 #   build        only build the drivers and the Python environment
 # Options go to the part: see Benchmarks/README.md. Needs g++, cmake and Python 3 with venv; 'level', 'fast',
-# 'decimation', 'field-times' and 'tri_quad' need the project built in build/ (or --build FOLDER).
+# 'decimation', 'field-times', 'threads' and 'tri_quad' need the project built in build/ (or --build FOLDER).
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/undecimate"
@@ -90,6 +91,7 @@ run() {
       rivals
       "$python" "$here/fast.py" "$@"
       ;;
+    threads) "$python" "$here/threads.py" "$@" ;;
     limit) "$python" "$here/core.py" limit --timing "$build/core_timing" --memory "$build/memory_limits" "$@" ;;
     deviation) "$python" "$here/deviation.py" --cli "$build/decimate_cli" "$@" ;;
     field)
@@ -115,7 +117,7 @@ run() {
 
 case $part in
   build) ;;
-  linear | fast | limit | decimation | deviation | tri_quad | field | field-ours | field-times | page | peer | test) run "$part" "$@" ;;
+  linear | fast | threads | limit | decimation | deviation | tri_quad | field | field-ours | field-times | page | peer | test) run "$part" "$@" ;;
   level)
     run level-core
     echo
