@@ -995,11 +995,12 @@ int turnedOver(const Mesh& mesh, const std::vector<Index>& triangles)
   return count;
 }
 
-/// Edges whose two triangles lie on each other, within 8 degrees.
-int folds(const Mesh& mesh, const std::vector<Index>& triangles)
+/// The ends of the edges where the cosine of the two triangles' normals is less.
+std::vector<std::pair<Index, Index>> edgesBelow(
+  const Mesh& mesh, const std::vector<Index>& triangles, double cosine)
 {
   std::map<std::pair<Index, Index>, Vector> behind;
-  int count = 0;
+  std::vector<std::pair<Index, Index>> edges;
   for (std::size_t i = 0; i < triangles.size(); i += 3)
   {
     const Vector normal = crossOf(mesh, triangles.data() + i);
@@ -1011,12 +1012,21 @@ int folds(const Mesh& mesh, const std::vector<Index>& triangles)
       if (other != behind.end())
       {
         const Vector& n = other->second;
-        count += dot(n, normal) < -0.99 * std::sqrt(dot(n, n) * dot(normal, normal)) ? 1 : 0;
+        if (dot(n, normal) < cosine * std::sqrt(dot(n, n) * dot(normal, normal)))
+        {
+          edges.emplace_back(from, to);
+        }
       }
       behind[{ from, to }] = normal;
     }
   }
-  return count;
+  return edges;
+}
+
+/// Edges whose two triangles lie on each other, within 8 degrees.
+std::size_t folds(const Mesh& mesh, const std::vector<Index>& triangles)
+{
+  return edgesBelow(mesh, triangles, -0.99).size();
 }
 
 /// New triangles that face away from the nearest original triangles, seen from seven places.
@@ -1075,7 +1085,7 @@ TEST(Deviation, RoughSurfacesDoNotFold)
   for (const double roughness : { 0.03, 0.06, 0.09 })
   {
     const Mesh mesh = crumpled(7, roughness);
-    const int foldsBefore = folds(mesh, mesh.triangles);
+    const std::size_t foldsBefore = folds(mesh, mesh.triangles);
     for (const double reduction : { 0.5, 0.9, 0.97 })
     {
       HashQueueDecimationOptions options;
@@ -1132,37 +1142,10 @@ Mesh bentCube(int n, const std::function<Vector(const Vector&)>& place)
   return mesh;
 }
 
-/// The nodes along an edge of the surface where it turns by more than 40 degrees.
-std::vector<std::pair<Index, Index>> sharpEdges(
-  const Mesh& mesh, const std::vector<Index>& triangles)
-{
-  std::map<std::pair<Index, Index>, Vector> behind;
-  std::vector<std::pair<Index, Index>> sharp;
-  for (std::size_t i = 0; i < triangles.size(); i += 3)
-  {
-    const Vector normal = crossOf(mesh, triangles.data() + i);
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      const Index from = triangles[i + c];
-      const Index to = triangles[i + (c + 1) % 3];
-      const auto other = behind.find({ to, from });
-      if (other != behind.end())
-      {
-        const Vector& n = other->second;
-        if (dot(n, normal) < 0.77 * std::sqrt(dot(n, n) * dot(normal, normal)))
-        {
-          sharp.emplace_back(from, to);
-        }
-      }
-      behind[{ from, to }] = normal;
-    }
-  }
-  return sharp;
-}
-
 // Without a feature angle: what cuts a sharp edge is far from it.
 TEST(Deviation, SharpEdgesStaySharp)
 {
+  constexpr double kSharp = 0.77; // 40 degrees
   const Mesh mesh = bentCube(24,
     [](const Vector& p)
     {
@@ -1176,14 +1159,14 @@ TEST(Deviation, SharpEdgesStaySharp)
     const auto p = mesh.point(node);
     return Vector{ p[0], p[1], p[2] };
   };
-  const auto before = sharpEdges(mesh, mesh.triangles);
+  const auto before = edgesBelow(mesh, mesh.triangles, kSharp);
   ASSERT_EQ(before.size(), 12U * 24U);
   for (const double reduction : { 0.8, 0.95, 0.98 })
   {
     HashQueueDecimationOptions options;
     options.targetReduction = reduction;
     const Decimated decimated(mesh, options);
-    const auto after = sharpEdges(mesh, baseTriangles(decimated));
+    const auto after = edgesBelow(mesh, baseTriangles(decimated), kSharp);
     // Each node of an edge is as near to a sharp edge of the result as the surfaces are.
     const double error = decimated.result.error * testing::diagonalOf(mesh);
     double farthest = 0.0;
