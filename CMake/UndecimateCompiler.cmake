@@ -12,7 +12,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if (UNDECIMATE_SANITIZE)
   # For all targets: every library of a process has to agree. Little optimisation, since it costs
   # more time to compile than it saves, and assertions are on. What the address sanitizer sees anyway
-  # (null pointers, wrong objects) is not looked at twice: it takes a third of the time to compile.
+  # (null pointers, wrong objects) is not looked at twice.
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,object-size,vptr
     -fno-sanitize-recover=all -fno-omit-frame-pointer)
