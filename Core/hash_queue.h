@@ -186,6 +186,19 @@ public:
     return interval == kNone ? kNone : this->ends_[interval].first;
   }
 
+  /// Ask for what taking a node out reads, and for what inserting one at the end of an interval
+  /// reads.
+  void prefetchRemove(Index node) const
+  {
+    const QueueLinks& links = this->linksOf_(node);
+    if (links.interval != kNone)
+    {
+      this->prefetchLinks(links.next);
+      this->prefetchLinks(links.previous);
+    }
+  }
+  void prefetchInsert(Index interval) const { this->prefetchLinks(this->ends_[interval].last); }
+
   /// front(), taken out.
   Index pop()
   {
@@ -203,6 +216,14 @@ private:
     Index first;
     Index last;
   };
+  void prefetchLinks(Index node) const
+  {
+    if (node != kNone)
+    {
+      prefetch(&this->linksOf_(node));
+    }
+  }
+
   LinksOf linksOf_;
   std::vector<Ends> ends_;
   IntervalBits bits_;

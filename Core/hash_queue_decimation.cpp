@@ -89,16 +89,18 @@ public:
       this->prefetch(queue);
       // Steps 3 to 5: remove it with its triangles and triangulate the hole. A node that cannot go
       // now waits outside the queue until a neighbour goes.
-      const Verdict verdict = tryRemoval(node, interval, intervals.count(), this->goal_.error,
-        intervals, this->criterion_, queue, this->removal_);
+      const bool isFar = this->goal_.isFar(this->trianglesLeft_);
+      const Verdict verdict = tryRemoval(node, isFar ? intervals.near(interval) : interval,
+        intervals.count(), this->goal_.error, intervals, this->criterion_, queue, this->removal_);
       tooCostly = tooCostly || verdict == Verdict::TooCostly;
       if (verdict != Verdict::Remove)
       {
         continue;
       }
+      this->prefetchPlaces(queue);
       this->remove();
       // Step 6: re-evaluate the neighbours; they go to the end of their interval's queue.
-      this->reevaluate(queue, intervals, interval);
+      this->reevaluate(queue, intervals, interval, isFar);
       // Step 7: back to step 2.
     }
     if constexpr (kIsQuadric)
@@ -149,32 +151,54 @@ private:
   // uses what the ones before have brought.
   void prefetch(const Queue& queue) const
   {
-    std::array<Index, 5> next;
+    std::array<Index, 6> next;
     Index node = queue.front();
     for (Index& n : next)
     {
       n = node;
       node = node == kNone ? kNone : queue.upcoming(node);
     }
-    if (next[4] != kNone)
+    if (next[5] != kNone)
     {
-      this->topology_.prefetchNode(next[4]);
+      this->topology_.prefetchNode(next[5]);
       if constexpr (kIsQuadric)
       {
-        this->criterion_.prefetch(next[4]);
+        this->criterion_.prefetch(next[5]);
       }
+    }
+    if (next[4] != kNone)
+    {
+      this->topology_.prefetchTriangle(next[4]);
     }
     if (next[3] != kNone)
     {
-      this->topology_.prefetchTriangle(next[3]);
+      this->topology_.prefetchNeighbours(next[3]);
     }
     if (next[2] != kNone)
     {
-      this->topology_.prefetchNeighbours(next[2]);
+      this->topology_.prefetchSecondNeighbours(next[2]);
     }
     if (next[1] != kNone)
     {
       this->topology_.prefetchRing(next[1]);
+    }
+  }
+
+  // Ring nodes whose place in the queue is about to change.
+  void prefetchPlaces(const Queue& queue) const
+  {
+    const Hole& hole = this->removal_.hole;
+    for (int i = 0; i < hole.size; ++i)
+    {
+      const Index node = hole.ring[i];
+      if constexpr (kIsQuadric)
+      {
+        if (!this->criterion_.isNext(node, hole))
+        {
+          continue;
+        }
+      }
+      queue.prefetchRemove(node);
     }
   }
 
@@ -191,10 +215,14 @@ private:
     --this->nodesLeft_;
   }
 
-  void reevaluate(Queue& queue, const Intervals& intervals, Index interval)
+  void reevaluate(Queue& queue, const Intervals& intervals, Index interval, bool isFar)
   {
+    if constexpr (!CriterionType::kLazy)
+    {
+      this->evaluateRing(queue, intervals);
+      return;
+    }
     const Hole& hole = this->removal_.hole;
-    const bool isFar = this->goal_.isFar(this->trianglesLeft_);
     for (int i = 0; i < hole.size; ++i)
     {
       const Index node = hole.ring[i];
@@ -205,7 +233,7 @@ private:
       if constexpr (kIsQuadric)
       {
         double expected = 0.0;
-        if (this->criterion_.expect(node, hole, expected))
+        if (this->criterion_.expect(node, hole, isFar, expected))
         {
           queue.insert(node, intervals.of(expected));
           continue;
@@ -215,18 +243,41 @@ private:
           continue;
         }
       }
+      double cost = 0.0;
       if (this->criterion_.isLazy())
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
         const bool queued = queue.contains(node);
         const Index place = queued ? queue.interval(node) : interval;
         queue.insert(node, queued && isFar ? std::max(place, intervals.risen(interval)) : place);
-        continue;
       }
-      double cost = 0.0;
-      if (this->criterion_.evaluate(node, cost))
+      else if (this->criterion_.evaluate(node, cost))
       {
         queue.insert(node, intervals.of(cost));
+      }
+    }
+  }
+
+  // All costs first: the ends of their intervals come into the cache meanwhile.
+  void evaluateRing(Queue& queue, const Intervals& intervals) const
+  {
+    const Hole& hole = this->removal_.hole;
+    std::array<Index, kMaximumPatchCells + 1> places;
+    for (int i = 0; i < hole.size; ++i)
+    {
+      double cost = 0.0;
+      places[i] = kNone;
+      if (!this->topology_.node(hole.ring[i]).kept && this->criterion_.evaluate(hole.ring[i], cost))
+      {
+        places[i] = intervals.of(cost);
+        queue.prefetchInsert(places[i]);
+      }
+    }
+    for (int i = 0; i < hole.size; ++i)
+    {
+      if (places[i] != kNone)
+      {
+        queue.insert(hole.ring[i], places[i]);
       }
     }
   }

@@ -500,7 +500,7 @@ private:
       bool isExpected = false;
       if constexpr (kIsQuadric)
       {
-        isExpected = worker.criterion.expect(node, hole, expected);
+        isExpected = worker.criterion.expect(node, hole, false, expected);
         if (!isExpected && queued)
         {
           continue;

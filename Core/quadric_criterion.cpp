@@ -260,7 +260,7 @@ void QuadricCriterion::prefetchExpected(const Hole& hole) const
   for (int i = 0; i < hole.size; ++i)
   {
     const Index node = hole.ring[i];
-    if (node == this->heir_ || this->topology_.node(node).value == hole.node)
+    if (this->isNext(node, hole))
     {
       this->prefetch(node);
     }
@@ -297,7 +297,7 @@ void QuadricCriterion::removed(const Hole& hole, const HoleTriangulation& /*fill
   this->store(this->heir_, sum);
 }
 
-bool QuadricCriterion::expect(Index node, const Hole& hole, double& cost)
+bool QuadricCriterion::expect(Index node, const Hole& hole, bool isRough, double& cost)
 {
   MeshNode& center = this->topology_.node(node);
   if (node != this->heir_)
@@ -307,7 +307,8 @@ bool QuadricCriterion::expect(Index node, const Hole& hole, double& cost)
       return false;
     }
     center.value = this->heir_;
-    cost = kOtherNeighbour * std::sqrt(this->meanSquare(this->quadric(node), node, this->heir_));
+    cost = (isRough ? 1.0 : kOtherNeighbour) *
+      std::sqrt(this->meanSquare(this->quadric(node), node, this->heir_));
     return true;
   }
   if (center.kind != NodeKind::Interior)

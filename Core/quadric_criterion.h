@@ -103,9 +103,16 @@ public:
   /// Take note of a removal (of the node and filling of the last confirm()).
   void removed(const Hole& hole, const HoleTriangulation& filling);
 
+  /// Whether expect() has news of a ring node of the hole of the last confirm(), in most cases.
+  bool isNext(Index node, const Hole& hole) const
+  {
+    return node == this->heir_ || this->topology_.node(node).value == hole.node;
+  }
+
   /// What a ring node is expected to cost after the removal of the hole's node; false if nothing is
   /// known that would change it.
-  bool expect(Index node, const Hole& hole, double& cost);
+  /// @param isRough its turn may come later than its cost says, for fewer evaluations
+  bool expect(Index node, const Hole& hole, bool isRough, double& cost);
 
   /// Give the memory back, that of all threads. Nothing may be called any more.
   void release() { undecimate::release(*this->memory_); }

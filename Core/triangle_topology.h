@@ -146,9 +146,10 @@ public:
   /// One fan, closed or open: only such nodes can be removed.
   bool isManifold(Index node) const { return this->nodes_[node].kind <= NodeKind::Boundary; }
 
-  /// Bring the data around a node that will be gathered soon into the cache, in four stages that
+  /// Bring the data around a node that will be gathered soon into the cache, in five stages that
   /// each use what the ones before have brought: the node, its triangle, the triangles beside that,
-  /// and the nodes around it with the triangles behind them and the nodes in Triangle::first.
+  /// those beside these, and the nodes around it with the triangles behind them and the nodes in
+  /// Triangle::first.
   void prefetchNode(Index node) const { prefetch(&this->nodes_[node]); }
   void prefetchTriangle(Index node) const { this->prefetchTriangleOf(this->nodes_[node].corner); }
   void prefetchNeighbours(Index node) const
@@ -159,6 +160,26 @@ public:
       const Triangle& t = this->triangles_[triangleOf(corner)];
       this->prefetchTriangleOf(t.across[nextCorner(cornerOf(corner))]);
       this->prefetchTriangleOf(t.across[previousCorner(cornerOf(corner))]);
+    }
+  }
+  void prefetchSecondNeighbours(Index node) const
+  {
+    const Corner corner = this->nodes_[node].corner;
+    if (corner != kNoCorner)
+    {
+      const Triangle& t = this->triangles_[triangleOf(corner)];
+      const Corner behind = t.across[nextCorner(cornerOf(corner))];
+      if (behind != kNoCorner)
+      {
+        this->prefetchTriangleOf(
+          this->triangles_[triangleOf(behind)].across[previousCorner(cornerOf(behind))]);
+      }
+      const Corner before = t.across[previousCorner(cornerOf(corner))];
+      if (before != kNoCorner)
+      {
+        this->prefetchTriangleOf(
+          this->triangles_[triangleOf(before)].across[nextCorner(cornerOf(before))]);
+      }
     }
   }
   void prefetchRing(Index node) const
