@@ -7,33 +7,41 @@
 #ifndef UNDECIMATE_CORE_DIAGONAL_H
 #define UNDECIMATE_CORE_DIAGONAL_H
 
+#include "threads.h"
 #include "triangle_topology.h"
 
-#include <algorithm>
 #include <cmath>
+#include <mutex>
 
 namespace undecimate
 {
 
 /// Length of the diagonal of the box around all finite points that a triangle uses; 0 if there is
 /// none or it is infinite. O(triangles).
-inline double diagonalOf(const TriangleTopology& topology)
+/// @param threads to share the work out among, or null; the result is the same
+inline double diagonalOf(const TriangleTopology& topology, Threads* threads = nullptr)
 {
-  Vector low{ HUGE_VAL, HUGE_VAL, HUGE_VAL };
-  Vector high{ -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
-  for (Index t = 0; t < topology.triangleCount(); ++t)
-  {
-    for (const Index node : topology.triangle(t).nodes)
+  Box all;
+  std::mutex mutex;
+  doInShares(threads, topology.triangleCount(),
+    [&](const Share& share)
     {
-      const Vector& p = topology.node(node).position;
-      if (isFinite(p))
+      Box box;
+      for (Index t = share.begin; t < share.end; ++t)
       {
-        low = { std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z) };
-        high = { std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z) };
+        for (const Index node : topology.triangle(t).nodes)
+        {
+          const Vector& p = topology.node(node).position;
+          if (isFinite(p))
+          {
+            box.add(p);
+          }
+        }
       }
-    }
-  }
-  const Vector size = high - low;
+      const std::lock_guard<std::mutex> lock(mutex);
+      all.add(box);
+    });
+  const Vector size = all.high - all.low;
   const double diagonal = std::sqrt(dot(size, size));
   return std::isfinite(diagonal) ? diagonal : 0.0;
 }

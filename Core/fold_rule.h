@@ -12,11 +12,14 @@
 #ifndef UNDECIMATE_CORE_FOLD_RULE_H
 #define UNDECIMATE_CORE_FOLD_RULE_H
 
+#include "threads.h"
 #include "triangle_topology.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <mutex>
 
 namespace undecimate
 {
@@ -91,33 +94,22 @@ class HeightFieldDirection
 public:
   /// Looks at all triangles that have an area, by the nodes' positions; most other meshes are told
   /// by their first few.
-  explicit HeightFieldDirection(const TriangleTopology& topology)
+  /// @param threads to share the work out among, or null; the result is the same
+  explicit HeightFieldDirection(const TriangleTopology& topology, Threads* threads = nullptr)
   {
-    bool facing[6] = { true, true, true, true, true, true };
+    std::array<bool, 6> facing{ true, true, true, true, true, true };
     bool any = false;
-    for (Index t = 0; t < topology.triangleCount(); ++t)
-    {
-      const auto& nodes = topology.triangle(t).nodes;
-      const Vector& a = topology.node(nodes[0]).position;
-      const Vector n =
-        cross(topology.node(nodes[1]).position - a, topology.node(nodes[2]).position - a);
-      if (!(dot(n, n) > 0.0))
+    std::mutex mutex;
+    doInShares(threads, topology.triangleCount(),
+      [&](const Share& share)
       {
-        continue;
-      }
-      any = true;
-      const double along[6] = { n.x, -n.x, n.y, -n.y, n.z, -n.z };
-      bool left = false;
-      for (int i = 0; i < 6; ++i)
-      {
-        facing[i] = facing[i] && along[i] > 0.0;
-        left = left || facing[i];
-      }
-      if (!left)
-      {
-        return;
-      }
-    }
+        std::array<bool, 6> faces{ true, true, true, true, true, true };
+        const bool some = addFaces(topology, share, faces);
+        const std::lock_guard<std::mutex> lock(mutex);
+        any = any || some;
+        std::transform(
+          facing.begin(), facing.end(), faces.begin(), facing.begin(), std::logical_and<bool>());
+      });
     for (int i = 0; any && i < 6; ++i)
     {
       if (facing[i])
@@ -144,6 +136,37 @@ public:
   }
 
 private:
+  // Which directions all triangles of a share face; false if none has an area.
+  static bool addFaces(
+    const TriangleTopology& topology, const Share& share, std::array<bool, 6>& facing)
+  {
+    bool any = false;
+    for (Index t = share.begin; t < share.end; ++t)
+    {
+      const auto& nodes = topology.triangle(t).nodes;
+      const Vector& a = topology.node(nodes[0]).position;
+      const Vector n =
+        cross(topology.node(nodes[1]).position - a, topology.node(nodes[2]).position - a);
+      if (!(dot(n, n) > 0.0))
+      {
+        continue;
+      }
+      any = true;
+      const double along[6] = { n.x, -n.x, n.y, -n.y, n.z, -n.z };
+      bool left = false;
+      for (int i = 0; i < 6; ++i)
+      {
+        facing[i] = facing[i] && along[i] > 0.0;
+        left = left || facing[i];
+      }
+      if (!left)
+      {
+        return true;
+      }
+    }
+    return any;
+  }
+
   Vector direction_{ 0.0, 0.0, 0.0 };
   bool known_ = false;
 };

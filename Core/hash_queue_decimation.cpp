@@ -17,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <type_traits>
 
@@ -387,42 +388,44 @@ Outcome checkMesh(const TriangleMeshView& mesh)
 
 /// Flag and count the nodes that are never candidates.
 void flagKeptNodes(const TriangleMeshView& mesh, bool preserveBoundary, TriangleTopology& topology,
-  HashQueueDecimationResult& result)
+  Threads* threads, HashQueueDecimationResult& result)
 {
-  for (Index i = 0; i < topology.nodeCount(); ++i)
+  using Counter = Index HashQueueDecimationResult::*;
+  static constexpr std::array<Counter, 6> kCounters{ &HashQueueDecimationResult::requestedNodes,
+    &HashQueueDecimationResult::nonFiniteNodes, &HashQueueDecimationResult::unusedNodes,
+    &HashQueueDecimationResult::degenerateNodes, &HashQueueDecimationResult::nonManifoldNodes,
+    &HashQueueDecimationResult::boundaryNodes };
+  const auto counterOf = [&](Index i) -> std::size_t
   {
-    MeshNode& node = topology.node(i);
-    Index* counter = nullptr;
-    if (mesh.keep && mesh.keep[i])
+    const MeshNode& node = topology.node(i);
+    return mesh.keep && mesh.keep[i]                        ? 0
+      : !isFinite(node.position)                            ? 1
+      : node.kind == NodeKind::Unused                       ? 2
+      : node.kind == NodeKind::Degenerate                   ? 3
+      : node.kind == NodeKind::NonManifold                  ? 4
+      : preserveBoundary && node.kind == NodeKind::Boundary ? 5
+                                                            : kCounters.size();
+  };
+  std::mutex mutex;
+  doInShares(threads, topology.nodeCount(),
+    [&](const Share& share)
     {
-      counter = &result.requestedNodes;
-    }
-    else if (!isFinite(node.position))
-    {
-      counter = &result.nonFiniteNodes;
-    }
-    else if (node.kind == NodeKind::Unused)
-    {
-      counter = &result.unusedNodes;
-    }
-    else if (node.kind == NodeKind::Degenerate)
-    {
-      counter = &result.degenerateNodes;
-    }
-    else if (node.kind == NodeKind::NonManifold)
-    {
-      counter = &result.nonManifoldNodes;
-    }
-    else if (preserveBoundary && node.kind == NodeKind::Boundary)
-    {
-      counter = &result.boundaryNodes;
-    }
-    if (counter)
-    {
-      ++*counter;
-      node.kept = true;
-    }
-  }
+      std::array<Index, kCounters.size()> counts{};
+      for (Index i = share.begin; i < share.end; ++i)
+      {
+        const std::size_t counter = counterOf(i);
+        if (counter < counts.size())
+        {
+          ++counts[counter];
+          topology.node(i).kept = true;
+        }
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      for (std::size_t c = 0; c < counts.size(); ++c)
+      {
+        result.*kCounters[c] += counts[c];
+      }
+    });
 }
 
 Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
@@ -434,7 +437,7 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
     threads = std::make_unique<Threads>(options.threads);
   }
   TriangleTopology topology(mesh, threads.get());
-  flagKeptNodes(mesh, options.preserveBoundary, topology, result);
+  flagKeptNodes(mesh, options.preserveBoundary, topology, threads.get(), result);
   const Goal goal(mesh, options);
   const auto decimateBy = [&](auto&& criterion)
   {
@@ -452,8 +455,9 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
   const Status status = options.criterion == Criterion::Deviation
     ? decimateBy(
         DeviationCriterion(topology, options.arrays, { options.scalarWeight, options.shapeWeight }))
-    : options.criterion == Criterion::Quadric ? decimateBy(QuadricCriterion(topology))
-                                              : decimateBy(MeanEdgeCriterion(topology, array));
+    : options.criterion == Criterion::Quadric
+    ? decimateBy(QuadricCriterion(topology, threads.get()))
+    : decimateBy(MeanEdgeCriterion(topology, array, threads.get()));
   return { status, status == Status::Cancelled ? "Cancelled." : "" };
 }
 

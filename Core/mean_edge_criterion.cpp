@@ -12,46 +12,73 @@
 namespace undecimate
 {
 
-MeanEdgeCriterion::MeanEdgeCriterion(TriangleTopology& topology, const NodalArrayView* array)
+MeanEdgeCriterion::MeanEdgeCriterion(
+  TriangleTopology& topology, const NodalArrayView* array, Threads* threads)
   : topology_(topology)
-  , heightField_(topology)
+  , heightField_(topology, threads)
   , array_(array)
   , scalar_(array && array->components == 1)
 {
+  const Index nodeCount = topology.nodeCount();
   if (array)
   {
-    const Index nodeCount = topology.nodeCount();
     const ArrayRange range = arrayRange(*array, nodeCount);
     this->scale_ = range.size > 0.0 ? 1.0 / range.size : 0.0;
-    for (Index i = 0; i < nodeCount; ++i)
-    {
-      MeshNode& node = topology.node(i);
-      if (this->scalar_)
-      {
-        const double value = (array->values[i] - range.lowest[0]) * this->scale_;
-        node.value =
-          std::isfinite(value) ? static_cast<std::int32_t>(std::lround(value * kUnit)) : -1;
-        node.kept = node.kept || node.value < 0;
-      }
-      else if (!isFinite(*array, i))
-      {
-        node.kept = true;
-      }
-    }
+    doInShares(
+      threads, nodeCount, [&](const Share& share) { this->setValues(range.lowest[0], share); });
   }
-  for (Index t = 0; t < topology.triangleCount(); ++t)
+  doInShares(threads, nodeCount, [this](const auto& ours) { this->addEdges(ours); });
+}
+
+void MeanEdgeCriterion::setValues(double lowest, const Share& share)
+{
+  for (Index i = share.begin; i < share.end; ++i)
   {
-    const TriangleTopology::Triangle& triangle = topology.triangle(t);
-    for (int c = 0; c < 3; ++c)
+    MeshNode& node = this->topology_.node(i);
+    if (this->scalar_)
     {
-      // Each edge once: from its boundary side, or from the smaller of its two corners.
-      const Corner across = triangle.across[c];
-      if (across == kNoCorner || makeCorner(t, c) < across)
-      {
-        this->addEdge(triangle.nodes[nextCorner(c)], triangle.nodes[previousCorner(c)]);
-      }
+      const double value = (this->array_->values[i] - lowest) * this->scale_;
+      node.value =
+        std::isfinite(value) ? static_cast<std::int32_t>(std::lround(value * kUnit)) : -1;
+      node.kept = node.kept || node.value < 0;
+    }
+    else if (!isFinite(*this->array_, i))
+    {
+      node.kept = true;
     }
   }
+}
+
+// To some of the nodes, the sums of their edges.
+template <typename Nodes>
+void MeanEdgeCriterion::addEdges(const Nodes& ours)
+{
+  this->topology_.visitTriangles(ours,
+    [&](Index t)
+    {
+      const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
+      for (int c = 0; c < 3; ++c)
+      {
+        // Each edge once: from its boundary side, or from the smaller of its two corners.
+        const Corner across = triangle.across[c];
+        const Index a = triangle.nodes[nextCorner(c)];
+        const Index b = triangle.nodes[previousCorner(c)];
+        if ((across == kNoCorner || makeCorner(t, c) < across) && (ours.has(a) || ours.has(b)))
+        {
+          MeshNode& nodeA = this->topology_.node(a);
+          MeshNode& nodeB = this->topology_.node(b);
+          const std::uint64_t sum = this->edgeSum(nodeA, nodeB, a, b);
+          if (ours.has(a))
+          {
+            nodeA.sum += sum;
+          }
+          if (ours.has(b))
+          {
+            nodeB.sum += sum;
+          }
+        }
+      }
+    });
 }
 
 std::int64_t MeanEdgeCriterion::otherQuantity(Index a, Index b) const

@@ -32,7 +32,9 @@ public:
   /// Scalar Difference by an array, or Angle to XY Plane without one. Nodes where the array is NaN
   /// or infinite are kept from now on; a difference to such a node counts as the whole range.
   /// @param topology with the positions of the nodes; their values and sums are ours from now on
-  MeanEdgeCriterion(TriangleTopology& topology, const NodalArrayView* array);
+  /// @param threads to share the work out among, or null; the result is the same
+  MeanEdgeCriterion(
+    TriangleTopology& topology, const NodalArrayView* array, Threads* threads = nullptr);
 
   /// The same, for another thread: both may be used at the same time for nodes that share no node
   /// of their rings.
@@ -81,6 +83,9 @@ private:
   }
   std::int64_t otherQuantity(Index a, Index b) const;
   void addEdge(Index a, Index b);
+  void setValues(double lowest, const Share& share);
+  template <typename Nodes>
+  void addEdges(const Nodes& ours);
 
   TriangleTopology& topology_;
   HeightFieldDirection heightField_;

@@ -21,10 +21,11 @@ constexpr Index kMaximumParts = 1 << 12; // a table has an entry for each pair o
 constexpr int kPlaceBits = 10;
 constexpr std::uint32_t kPlaces = 1 << kPlaceBits;
 
-// Bits of a row of cells: a part has several cells.
+// Bits of a row of cells: a part has several cells. More of them cost more time than shorter seams
+// save.
 int rowBits(Index nodes)
 {
-  return nodes > 500000 ? 7 : nodes > 60000 ? 6 : 5;
+  return nodes > 4000000 ? 7 : nodes > 60000 ? 6 : 5;
 }
 
 // Three bits apart.
@@ -58,11 +59,6 @@ MeshParts::MeshParts(const TriangleTopology& topology, Threads& threads)
   {
     this->parts_.push_back({ begin, begin + std::min(block, nodeCount - begin) });
   }
-  struct Box
-  {
-    Vector low{ HUGE_VAL, HUGE_VAL, HUGE_VAL };
-    Vector high{ -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
-  };
   std::vector<Box> boxes(this->parts_.size());
   threads.run(this->count(),
     [&](Index part, int /*thread*/)
@@ -74,10 +70,7 @@ MeshParts::MeshParts(const TriangleTopology& topology, Threads& threads)
         const Vector& p = topology.node(node).position;
         if (isFinite(p))
         {
-          box.low = { std::min(box.low.x, p.x), std::min(box.low.y, p.y),
-            std::min(box.low.z, p.z) };
-          box.high = { std::max(box.high.x, p.x), std::max(box.high.y, p.y),
-            std::max(box.high.z, p.z) };
+          box.add(p);
         }
       }
       boxes[part] = box;
@@ -85,10 +78,7 @@ MeshParts::MeshParts(const TriangleTopology& topology, Threads& threads)
   Box all;
   for (const Box& box : boxes)
   {
-    all.low = { std::min(all.low.x, box.low.x), std::min(all.low.y, box.low.y),
-      std::min(all.low.z, box.low.z) };
-    all.high = { std::max(all.high.x, box.high.x), std::max(all.high.y, box.high.y),
-      std::max(all.high.z, box.high.z) };
+    all.add(box);
   }
   const double size =
     std::max({ all.high.x - all.low.x, all.high.y - all.low.y, all.high.z - all.low.z });

@@ -67,17 +67,21 @@ Quadric Quadric::seenFrom(const Vector& p) const
   return moved;
 }
 
-QuadricCriterion::QuadricCriterion(TriangleTopology& topology)
+QuadricCriterion::QuadricCriterion(TriangleTopology& topology, Threads* threads)
   : topology_(topology)
-  , heightField_(topology)
+  , heightField_(topology, threads)
   , memory_(std::make_shared<LargeArray<Stored, 2>>(
       topology.nodeCount(), Stored{ 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F }))
   , stored_(this->memory_->data())
 {
-  const double diagonal = diagonalOf(topology);
+  const double diagonal = diagonalOf(topology, threads);
   this->unit_ = diagonal > 0.0 ? 1.0 / diagonal : 0.0;
-  this->addPlanes();
-  this->findCosts();
+  doInShares(threads, topology.nodeCount(),
+    [this](const auto& ours)
+    {
+      this->addPlanes(ours);
+      this->findCosts(ours);
+    });
 }
 
 Quadric QuadricCriterion::quadric(Index node) const
@@ -97,12 +101,17 @@ void QuadricCriterion::store(Index node, const Quadric& q)
   std::memcpy(&this->topology_.node(node).sum, rest.data(), sizeof(rest));
 }
 
-// All these planes go through the node itself, so they add nothing but to A.
-void QuadricCriterion::addPlanes()
+// To some of the nodes. All these planes go through the node itself, so they add nothing but to A.
+template <typename Nodes>
+void QuadricCriterion::addPlanes(const Nodes& ours)
 {
   // Weight over the square of the normal's length.
-  const auto addPlane = [this](Index node, const Vector& normal, double factor)
+  const auto addPlane = [&](Index node, const Vector& normal, double factor)
   {
+    if (!ours.has(node))
+    {
+      return;
+    }
     Stored& s = this->stored_[node];
     const Vector weighted = factor * normal;
     s.xx += static_cast<float>(weighted.x * normal.x);
@@ -112,46 +121,54 @@ void QuadricCriterion::addPlanes()
     s.yz += static_cast<float>(weighted.y * normal.z);
     s.zx += static_cast<float>(weighted.z * normal.x);
   };
-  for (Index t = 0; t < this->topology_.triangleCount(); ++t)
-  {
-    const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
-    const auto at = [&](int c) { return this->topology_.node(triangle.nodes[c]).position; };
-    const Vector normal = cross(this->unit_ * (at(1) - at(0)), this->unit_ * (at(2) - at(0)));
-    const double square = dot(normal, normal);
-    if (!(square > kSmallestSquare) || !std::isfinite(square))
+  this->topology_.visitTriangles(ours,
+    [&](Index t)
     {
-      continue;
-    }
-    const double third = 1.0 / (6.0 * std::sqrt(square)); // of the area
-    for (int c = 0; c < 3; ++c)
-    {
-      addPlane(triangle.nodes[c], normal, third);
-    }
-    for (int c = 0; c < 3; ++c)
-    {
-      if (triangle.across[c] == kNoCorner)
+      const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
+      if (std::none_of(triangle.nodes.begin(), triangle.nodes.end(),
+            [&](Index node) { return ours.has(node); }))
       {
-        const int from = nextCorner(c);
-        const int to = previousCorner(c);
-        // As long as the edge times the normal, and weighted by the edge's square.
-        const Vector upright = cross(this->unit_ * (at(to) - at(from)), normal);
-        addPlane(triangle.nodes[from], upright, kBoundaryWeight / square);
-        addPlane(triangle.nodes[to], upright, kBoundaryWeight / square);
+        return;
       }
-    }
-  }
+      const auto at = [&](int c) { return this->topology_.node(triangle.nodes[c]).position; };
+      const Vector normal = cross(this->unit_ * (at(1) - at(0)), this->unit_ * (at(2) - at(0)));
+      const double square = dot(normal, normal);
+      if (!(square > kSmallestSquare) || !std::isfinite(square))
+      {
+        return;
+      }
+      const double third = 1.0 / (6.0 * std::sqrt(square)); // of the area
+      for (int c = 0; c < 3; ++c)
+      {
+        addPlane(triangle.nodes[c], normal, third);
+      }
+      for (int c = 0; c < 3; ++c)
+      {
+        if (triangle.across[c] == kNoCorner)
+        {
+          const int from = nextCorner(c);
+          const int to = previousCorner(c);
+          // As long as the edge times the normal, and weighted by the edge's square.
+          const Vector upright = cross(this->unit_ * (at(to) - at(from)), normal);
+          addPlane(triangle.nodes[from], upright, kBoundaryWeight / square);
+          addPlane(triangle.nodes[to], upright, kBoundaryWeight / square);
+        }
+      }
+    });
 }
 
-void QuadricCriterion::findCosts()
+// Of some of the nodes.
+template <typename Nodes>
+void QuadricCriterion::findCosts(const Nodes& ours)
 {
-  for (Index i = 0; i < this->topology_.nodeCount(); ++i)
+  for (Index i = ours.begin; i < ours.end; ++i)
   {
     setFirstCost(this->topology_.node(i), std::numeric_limits<float>::infinity());
   }
-  const auto compare = [this](Index from, Index to, bool boundary, const Vector& place)
+  const auto compare = [&](Index from, Index to, bool boundary, const Vector& place)
   {
     MeshNode& node = this->topology_.node(from);
-    if (node.kind == NodeKind::Boundary && !boundary)
+    if (!ours.has(from) || (node.kind == NodeKind::Boundary && !boundary))
     {
       return;
     }
@@ -166,24 +183,29 @@ void QuadricCriterion::findCosts()
       node.value = to;
     }
   };
-  for (Index t = 0; t < this->topology_.triangleCount(); ++t)
-  {
-    const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
-    for (int c = 0; c < 3; ++c)
+  this->topology_.visitTriangles(ours,
+    [&](Index t)
     {
-      // Each edge once: from its boundary side, or from the smaller of its two corners.
-      const Corner across = triangle.across[c];
-      if (across == kNoCorner || makeCorner(t, c) < across)
+      const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
+      for (int c = 0; c < 3; ++c)
       {
-        const Index a = triangle.nodes[nextCorner(c)];
-        const Index b = triangle.nodes[previousCorner(c)];
-        const Vector place =
-          this->unit_ * (this->topology_.node(b).position - this->topology_.node(a).position);
-        compare(a, b, across == kNoCorner, place);
-        compare(b, a, across == kNoCorner, place);
+        // Each edge once: from its boundary side, or from the smaller of its two corners.
+        const Corner across = triangle.across[c];
+        if (across == kNoCorner || makeCorner(t, c) < across)
+        {
+          const Index a = triangle.nodes[nextCorner(c)];
+          const Index b = triangle.nodes[previousCorner(c)];
+          if (!ours.has(a) && !ours.has(b))
+          {
+            continue;
+          }
+          const Vector place =
+            this->unit_ * (this->topology_.node(b).position - this->topology_.node(a).position);
+          compare(a, b, across == kNoCorner, place);
+          compare(b, a, across == kNoCorner, place);
+        }
       }
-    }
-  }
+    });
 }
 
 double QuadricCriterion::meanSquare(const Quadric& quadric, Index from, Index to) const

@@ -78,7 +78,8 @@ public:
   static constexpr bool isLazy() { return true; }
 
   /// @param topology with the positions of the nodes; their values and sums are ours from now on
-  explicit QuadricCriterion(TriangleTopology& topology);
+  /// @param threads to share the work out among, or null; the result is the same
+  explicit QuadricCriterion(TriangleTopology& topology, Threads* threads = nullptr);
 
   /// The same, for another thread: both may be used at the same time for nodes that share no node
   /// of their rings.
@@ -137,8 +138,10 @@ private:
   Quadric quadric(Index node) const;
   void store(Index node, const Quadric& quadric);
   double meanSquare(const Quadric& quadric, Index from, Index to) const;
-  void addPlanes();
-  void findCosts();
+  template <typename Nodes>
+  void addPlanes(const Nodes& ours);
+  template <typename Nodes>
+  void findCosts(const Nodes& ours);
   void prefetchExpected(const Hole& hole) const;
   bool fillByFan(
     const Hole& hole, const HoleRing& ring, int apex, HoleTriangulation& filling) const;

@@ -9,6 +9,7 @@
 
 #include "types.h"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
@@ -45,6 +46,36 @@ private:
   struct Internals;
   std::unique_ptr<Internals> internals_;
 };
+
+/// A part of the indices [0, count), or all of them, which costs no question.
+struct Share
+{
+  Index begin;
+  Index end;
+  bool has(Index i) const { return i >= this->begin && i < this->end; }
+};
+struct Whole : Share
+{
+  static constexpr bool has(Index /*i*/) { return true; }
+};
+
+/// Do job(share) for shares of [0, count), one for each thread, or job(whole) if there is only one
+/// (or null).
+template <typename Job>
+void doInShares(Threads* threads, Index count, const Job& job)
+{
+  const Index shares = threads ? threads->count() : 1;
+  if (shares == 1)
+  {
+    job(Whole{ { 0, count } });
+    return;
+  }
+  const Index size = count / shares + 1;
+  threads->run(shares,
+    [&](Index i, int /*thread*/) {
+      job(Share{ std::min(count, i * size), std::min(count, i * size + size) });
+    });
+}
 
 } // namespace undecimate
 

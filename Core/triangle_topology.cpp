@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 
 namespace undecimate
 {
@@ -60,6 +61,10 @@ TriangleTopology::TriangleTopology(const TriangleMeshView& mesh, Threads* thread
 template <typename Number>
 void TriangleTopology::build(const Number* triangles, Threads* threads)
 {
+  if (threads && threads->count() > 1)
+  {
+    this->ranges_.resize(this->triangles_.size() / kNodeRangeTriangles + 1);
+  }
   const auto fill = [&]
   {
     doInBlocks(threads, this->triangleCount(), kBlock,
@@ -72,6 +77,7 @@ void TriangleTopology::build(const Number* triangles, Threads* threads)
                                     static_cast<Index>(t[2]) },
             { kNoCorner, kNoCorner, kNoCorner }, kNone, 0 };
         }
+        this->findRanges(begin, end);
       });
   };
   fill();
@@ -84,8 +90,28 @@ void TriangleTopology::build(const Number* triangles, Threads* threads)
     fill();
     this->connect();
   }
-  this->markDegenerate();
+  this->markDegenerate(threads);
   this->markNodes(threads);
+}
+
+// Of triangles from the beginning of a range on.
+void TriangleTopology::findRanges(Index begin, Index end)
+{
+  static_assert(kBlock % kNodeRangeTriangles == 0, "a range is one job's");
+  for (Index first = begin; first < end && !this->ranges_.empty(); first += kNodeRangeTriangles)
+  {
+    NodeRange range{ this->nodeCount(), 0 };
+    const Index count = std::min(kNodeRangeTriangles, end - first);
+    for (Index t = first; t < first + count; ++t)
+    {
+      for (const Index node : this->triangles_[t].nodes)
+      {
+        range.lowest = std::min(range.lowest, node);
+        range.highest = std::max(range.highest, node);
+      }
+    }
+    this->ranges_[static_cast<std::size_t>(first / kNodeRangeTriangles)] = range;
+  }
 }
 
 // connect() by several threads, each for the edges whose smaller node is in its share. False if
@@ -95,11 +121,10 @@ bool TriangleTopology::connect(Threads& threads)
   LargeArray<Corner> first(this->nodes_.size(), kNoCorner);
   LargeArray<Corner, 2> next(std::size_t{ 3 } * this->triangles_.size());
   std::atomic<bool> good{ true };
-  const Index share = this->nodeCount() / threads.count() + 1;
-  doInBlocks(&threads, this->nodeCount(), share,
-    [&](Index begin, Index end)
+  doInShares(&threads, this->nodeCount(),
+    [&](const Share& ours)
     {
-      if (!this->connectShare(begin, end, first, next))
+      if (!this->connectShare(ours, first, next))
       {
         good = false;
       }
@@ -108,24 +133,24 @@ bool TriangleTopology::connect(Threads& threads)
 }
 
 bool TriangleTopology::connectShare(
-  Index begin, Index end, LargeArray<Corner>& first, LargeArray<Corner, 2>& next)
+  const Share& ours, LargeArray<Corner>& first, LargeArray<Corner, 2>& next)
 {
   const auto behind = [&next](Corner corner) -> Corner&
   { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
-  const auto isOurs = [begin, end](Index node) { return node >= begin && node < end; };
-  for (Index i = 0; i < this->triangleCount(); ++i)
+  bool good = true;
+  const auto connectTriangle = [&](Index i)
   {
     const std::array<Index, 3> nodes = this->triangles_[i].nodes;
     for (int c = 0; c < 3; ++c)
     {
       const Index from = nodes[nextCorner(c)];
       const Index to = nodes[previousCorner(c)];
-      if (isOurs(nodes[c]))
+      if (ours.has(nodes[c]))
       {
         this->nodes_[nodes[c]].neighbours |= signature(from) | signature(to);
       }
       const Index smaller = std::min(from, to);
-      if (!isOurs(smaller))
+      if (!ours.has(smaller))
       {
         continue;
       }
@@ -138,7 +163,8 @@ bool TriangleTopology::connectShare(
         const Index thereTo = others[previousCorner(cornerOf(there))];
         if (thereFrom == from && thereTo == to)
         {
-          return false;
+          good = false;
+          return;
         }
         if (thereFrom == to && thereTo == from)
         {
@@ -154,13 +180,22 @@ bool TriangleTopology::connectShare(
       Corner& across = this->triangles_[triangleOf(there)].across[cornerOf(there)];
       if (across != kNoCorner)
       {
-        return false;
+        good = false;
+        return;
       }
       across = here;
       this->triangles_[i].across[c] = there;
     }
-  }
-  return true;
+  };
+  this->visitTriangles(ours,
+    [&](Index i)
+    {
+      if (good)
+      {
+        connectTriangle(i);
+      }
+    });
+  return good;
 }
 
 // Find the triangles on either side of each edge. Of each edge the first corner opposite to it is
@@ -229,21 +264,13 @@ void TriangleTopology::connect()
 }
 
 // Triangles with a node twice, and triangles that exist twice (in either orientation).
-void TriangleTopology::markDegenerate()
+void TriangleTopology::markDegenerate(Threads* threads)
 {
-  const auto mark = [this](const Triangle& t)
-  {
-    for (const Index node : t.nodes)
-    {
-      this->nodes_[node].kind = NodeKind::Degenerate;
-    }
-  };
-  for (const Triangle& t : this->triangles_)
+  const auto isDegenerate = [](const Triangle& t)
   {
     if (t.nodes[0] == t.nodes[1] || t.nodes[1] == t.nodes[2] || t.nodes[2] == t.nodes[0])
     {
-      mark(t);
-      continue;
+      return true;
     }
     // Two copies share all edges. If each edge has just the two of them they are neighbours; else
     // their edges are non-manifold or misoriented, and their nodes are kept for that.
@@ -253,10 +280,27 @@ void TriangleTopology::markDegenerate()
       const Corner b = t.across[nextCorner(c)];
       if (a != kNoCorner && b != kNoCorner && triangleOf(a) == triangleOf(b))
       {
-        mark(t);
+        return true;
       }
     }
-  }
+    return false;
+  };
+  std::mutex mutex; // there are few
+  doInShares(threads, this->triangleCount(),
+    [&](const Share& share)
+    {
+      for (Index i = share.begin; i < share.end; ++i)
+      {
+        if (isDegenerate(this->triangles_[i]))
+        {
+          const std::lock_guard<std::mutex> lock(mutex);
+          for (const Index node : this->triangles_[i].nodes)
+          {
+            this->nodes_[node].kind = NodeKind::Degenerate;
+          }
+        }
+      }
+    });
 }
 
 void TriangleTopology::markNodes(Threads* threads)
@@ -264,33 +308,33 @@ void TriangleTopology::markNodes(Threads* threads)
   const Index nodeCount = this->nodeCount();
   LargeArray<Index> uses(nodeCount, 0);
   std::vector<unsigned char> open(nodeCount, 0); // fans' ends: boundary edges that leave the node
-  const Index share = threads ? nodeCount / threads->count() + 1 : nodeCount;
-  doInBlocks(threads, nodeCount, share,
-    [&](Index begin, Index end)
+  doInShares(threads, nodeCount,
+    [&](const auto& ours)
     {
-      for (Index i = 0; i < this->triangleCount(); ++i)
-      {
-        const Triangle& t = this->triangles_[i];
-        for (int c = 0; c < 3; ++c)
+      this->visitTriangles(ours,
+        [&](Index i)
         {
-          const Index node = t.nodes[c];
-          if (node < begin || node >= end)
+          const Triangle& t = this->triangles_[i];
+          for (int c = 0; c < 3; ++c)
           {
-            continue;
+            const Index node = t.nodes[c];
+            if (!ours.has(node))
+            {
+              continue;
+            }
+            ++uses[node];
+            // The first triangle of an open fan has nothing behind its edge node -> next node.
+            const bool start = t.across[previousCorner(c)] == kNoCorner;
+            if (start && open[node] < 2)
+            {
+              ++open[node];
+            }
+            if (start || this->nodes_[node].corner == kNoCorner)
+            {
+              this->nodes_[node].corner = makeCorner(i, c);
+            }
           }
-          ++uses[node];
-          // The first triangle of an open fan has nothing behind its edge node -> next node.
-          const bool start = t.across[previousCorner(c)] == kNoCorner;
-          if (start && open[node] < 2)
-          {
-            ++open[node];
-          }
-          if (start || this->nodes_[node].corner == kNoCorner)
-          {
-            this->nodes_[node].corner = makeCorner(i, c);
-          }
-        }
-      }
+        });
     });
   const auto mark = [&](Index node)
   {

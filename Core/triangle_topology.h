@@ -15,6 +15,7 @@
 #include "types.h"
 #include "vector.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <vector>
@@ -273,6 +274,28 @@ public:
   /// triangle i. The other slots are free afterwards.
   void replace(const Hole& hole, const HoleTriangulation& filling);
 
+  /// Visit(t) for all triangles that have a node of a share, and others. Where the numbers of
+  /// triangles and nodes run together, as most do, the others are few.
+  template <typename Visit>
+  void visitTriangles(const Share& nodes, Visit&& visit) const
+  {
+    for (Index begin = 0; begin < this->triangleCount(); begin += kNodeRangeTriangles)
+    {
+      const NodeRange* range = this->ranges_.empty()
+        ? nullptr
+        : &this->ranges_[static_cast<std::size_t>(begin / kNodeRangeTriangles)];
+      if (range && (range->highest < nodes.begin || range->lowest >= nodes.end))
+      {
+        continue;
+      }
+      const Index count = std::min(kNodeRangeTriangles, this->triangleCount() - begin);
+      for (Index t = begin; t < begin + count; ++t)
+      {
+        visit(t);
+      }
+    }
+  }
+
   /// Free the memory of the nodes, or of the triangles. Only the others may be used any more.
   void freeNodes() { release(this->nodes_); }
   void freeTriangles() { release(this->triangles_); }
@@ -322,13 +345,23 @@ private:
   template <typename Number>
   void build(const Number* triangles, Threads* threads);
   void connect();
-  bool connectShare(Index begin, Index end, LargeArray<Corner>& first, LargeArray<Corner, 2>& next);
+  bool connectShare(const Share& ours, LargeArray<Corner>& first, LargeArray<Corner, 2>& next);
   bool connect(Threads& threads);
-  void markDegenerate();
+  void findRanges(Index begin, Index end);
+  void markDegenerate(Threads* threads);
   void markNodes(Threads* threads);
+
+  // The nodes of so many triangles each; with threads only, and as the mesh was made.
+  struct NodeRange
+  {
+    Index lowest;
+    Index highest;
+  };
+  static constexpr Index kNodeRangeTriangles = 1 << 10;
 
   LargeArray<Triangle> triangles_;
   LargeArray<MeshNode, 1> nodes_;
+  std::vector<NodeRange> ranges_;
 };
 
 } // namespace undecimate

@@ -9,6 +9,7 @@
 
 #include "compiler.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace undecimate
@@ -50,6 +51,30 @@ struct VectorOf
 };
 
 using Vector = VectorOf<double>;
+
+/// The box around points, at first around none.
+struct Box
+{
+  Vector low{ HUGE_VAL, HUGE_VAL, HUGE_VAL };
+  Vector high{ -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
+
+  void add(const Vector& p)
+  {
+    this->low = { std::min(this->low.x, p.x), std::min(this->low.y, p.y),
+      std::min(this->low.z, p.z) };
+    this->high = { std::max(this->high.x, p.x), std::max(this->high.y, p.y),
+      std::max(this->high.z, p.z) };
+  }
+
+  /// Its corners; those of an empty one change nothing.
+  void add(const Box& other)
+  {
+    this->low = { std::min(this->low.x, other.low.x), std::min(this->low.y, other.low.y),
+      std::min(this->low.z, other.low.z) };
+    this->high = { std::max(this->high.x, other.high.x), std::max(this->high.y, other.high.y),
+      std::max(this->high.z, other.high.z) };
+  }
+};
 
 } // namespace undecimate
 
