@@ -33,13 +33,13 @@ constexpr double kMargin = 1.05;
 
 } // namespace
 
-DeviationCriterion::DeviationCriterion(
-  TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, const Weights& weights)
+DeviationCriterion::DeviationCriterion(TriangleTopology& topology,
+  const std::vector<NodalArrayView>& arrays, const Weights& weights, Threads* threads)
 {
-  const auto shared = std::make_shared<Shared>(topology, arrays);
+  const auto shared = std::make_shared<Shared>(topology, arrays, threads);
   Shared& in = *shared;
   const Index nodeCount = topology.nodeCount();
-  const double diagonal = diagonalOf(topology);
+  const double diagonal = diagonalOf(topology, threads);
   in.unit = diagonal > 0.0 ? 1.0 / diagonal : 0.0;
   in.shapeWeight = kShapeWeight + weights.shape;
   in.shapeCost = weights.shape;
@@ -72,10 +72,14 @@ DeviationCriterion::DeviationCriterion(
     const double area = 0.5 * std::sqrt(dot(normal, normal));
     in.holeArea += std::isfinite(area) ? kMeanHole * area : 0.0;
   }
-  for (Index node = 0; node < nodeCount; ++node)
-  {
-    topology.node(node).sum = packed(in.original.normal(node));
-  }
+  doInShares(threads, nodeCount,
+    [&](const Share& share)
+    {
+      for (Index node = share.begin; node < share.end; ++node)
+      {
+        topology.node(node).sum = packed(in.original.normal(node));
+      }
+    });
   in.next.assign(nodeCount, kNone);
   for (Index node = 0; node < nodeCount; ++node)
   {

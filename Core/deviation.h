@@ -63,8 +63,9 @@ public:
 
   /// Nodes where an array is NaN or infinite are kept from now on.
   /// @param topology with the positions of the nodes
-  DeviationCriterion(
-    TriangleTopology& topology, const std::vector<NodalArrayView>& arrays, const Weights& weights);
+  /// @param threads to share the work out among, or null; the result is the same
+  DeviationCriterion(TriangleTopology& topology, const std::vector<NodalArrayView>& arrays,
+    const Weights& weights, Threads* threads = nullptr);
   ~DeviationCriterion();
   DeviationCriterion(DeviationCriterion&& other) noexcept;
 

@@ -155,10 +155,10 @@ struct DeviationCriterion::Shared
   std::vector<Index> boundaryFirst;
   std::vector<Index> boundaryNext;
 
-  Shared(TriangleTopology& topology_, const std::vector<NodalArrayView>& arrays_)
+  Shared(TriangleTopology& topology_, const std::vector<NodalArrayView>& arrays_, Threads* threads)
     : topology(topology_)
-    , original(topology_)
-    , heightField(topology_)
+    , original(topology_, threads)
+    , heightField(topology_, threads)
     , arrays(arrays_)
   {
   }

@@ -453,8 +453,8 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
   const NodalArrayView* array =
     options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr;
   const Status status = options.criterion == Criterion::Deviation
-    ? decimateBy(
-        DeviationCriterion(topology, options.arrays, { options.scalarWeight, options.shapeWeight }))
+    ? decimateBy(DeviationCriterion(
+        topology, options.arrays, { options.scalarWeight, options.shapeWeight }, threads.get()))
     : options.criterion == Criterion::Quadric
     ? decimateBy(QuadricCriterion(topology, threads.get()))
     : decimateBy(MeanEdgeCriterion(topology, array, threads.get()));

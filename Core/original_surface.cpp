@@ -4,6 +4,7 @@
 #include "original_surface.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -68,19 +69,27 @@ double squaredDistanceToTriangle(const Vector& a, const Vector& b, const Vector&
 
 } // namespace
 
-OriginalSurface::OriginalSurface(const TriangleTopology& topology)
+OriginalSurface::OriginalSurface(const TriangleTopology& topology, Threads* threads)
   : topology_(topology)
   , first_(topology.nodeCount() + std::size_t{ 1 }, 0)
 {
   // A fan has a node more than triangles. Where triangles make no fan each of them is one.
   const Index triangleCount = topology.triangleCount();
-  for (Index t = 0; t < triangleCount; ++t)
-  {
-    for (const Index node : topology.triangle(t).nodes)
+  doInShares(threads, topology.nodeCount(),
+    [&](const auto& ours)
     {
-      this->first_[node] += topology.isManifold(node) ? 1 : 2;
-    }
-  }
+      topology.visitTriangles(ours,
+        [&](Index t)
+        {
+          for (const Index node : topology.triangle(t).nodes)
+          {
+            if (ours.has(node))
+            {
+              this->first_[node] += topology.isManifold(node) ? 1 : 2;
+            }
+          }
+        });
+    });
   Index sum = 0;
   for (Index node = 0; node < topology.nodeCount(); ++node)
   {
@@ -90,21 +99,24 @@ OriginalSurface::OriginalSurface(const TriangleTopology& topology)
   }
   this->first_[topology.nodeCount()] = sum;
   this->entries_.resize(sum);
-  std::vector<Index> filled; // of the nodes without a fan
-  for (Index node = 0; node < topology.nodeCount(); ++node)
-  {
-    if (topology.isManifold(node))
+  std::atomic<bool> anyOther{ false };
+  doInShares(threads, topology.nodeCount(),
+    [&](const Share& share)
     {
-      Index* entry = this->entries_.data() + this->first_[node];
-      topology.visitFan(node, [&entry](Index other) { *entry++ = other; });
-      entry = this->entries_.data() + this->first_[node];
-      *entry = ~*entry;
-    }
-    else if (filled.empty())
-    {
-      filled.assign(topology.nodeCount(), 0);
-    }
-  }
+      for (Index node = share.begin; node < share.end; ++node)
+      {
+        if (!topology.isManifold(node))
+        {
+          anyOther.store(true, std::memory_order_relaxed);
+          continue;
+        }
+        Index* entry = this->entries_.data() + this->first_[node];
+        topology.visitFan(node, [&entry](Index other) { *entry++ = other; });
+        entry = this->entries_.data() + this->first_[node];
+        *entry = ~*entry;
+      }
+    });
+  std::vector<Index> filled(anyOther ? topology.nodeCount() : 0, 0); // of the nodes without a fan
   for (Index t = 0; t < triangleCount && !filled.empty(); ++t)
   {
     const auto& nodes = topology.triangle(t).nodes;

@@ -25,7 +25,8 @@ class OriginalSurface
 {
 public:
   /// @param topology of the original mesh; must outlive this, and its nodes keep their positions
-  explicit OriginalSurface(const TriangleTopology& topology);
+  /// @param threads to share the work out among, or null; the result is the same
+  explicit OriginalSurface(const TriangleTopology& topology, Threads* threads = nullptr);
 
   /// Squared distance from a point to the surface near a node. Walks from the triangles around the
   /// node to those around the corners of the nearest one, and so on until no nearer one is found:

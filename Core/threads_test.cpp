@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <numeric>
 #include <stdexcept>
@@ -37,6 +38,34 @@ TEST_P(SomeThreads, EachJobIsDoneOnce)
     std::iota(all.begin(), all.end(), 0);
     EXPECT_EQ(done, all);
   }
+}
+
+TEST_P(SomeThreads, SharesCoverAllOnce)
+{
+  Threads threads(GetParam());
+  for (const Index count : { 0, 1, 2, 5, 1000 })
+  {
+    std::vector<std::atomic<int>> done(count);
+    std::atomic<Index> shares{ 0 };
+    doInShares(&threads, count,
+      [&](const auto& ours)
+      {
+        ++shares;
+        for (Index i = 0; i < count; ++i)
+        {
+          EXPECT_EQ(ours.has(i), i >= ours.begin && i < ours.end);
+          done[i] += ours.has(i) ? 1 : 0;
+        }
+      });
+    EXPECT_EQ(shares, threads.count());
+    EXPECT_TRUE(std::all_of(done.begin(), done.end(), [](int times) { return times == 1; }));
+  }
+  doInShares(nullptr, 7,
+    [](const auto& ours)
+    {
+      EXPECT_EQ(ours.begin, 0);
+      EXPECT_EQ(ours.end, 7);
+    });
 }
 
 TEST_P(SomeThreads, WhatWasWrittenBeforeIsSeen)
