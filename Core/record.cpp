@@ -4,6 +4,7 @@
 #include "record.h"
 
 #include "compiler.h"
+#include "hole_code.h"
 #include "large_array.h"
 #include "record_shapes.h"
 
@@ -50,10 +51,13 @@ Outcome checkPresence(const RecordView& record, const Index* baseCells)
   };
   const Array arrays[] = { { record.nodeOrder, record.nodeCount, "NodeOrder" },
     { record.cellOrder, record.cellCount, "CellOrder" },
-    { record.stepShapes, record.stepCount, "StepShapes" },
     { record.stepErrors, record.stepCount, "StepErrors" },
-    { record.patches, record.patchSize, "Patches" }, { record.shapeOffsets, 1, "ShapeOffsets" },
-    { record.shapes, record.shapeCount, "Shapes" },
+    { record.patches, record.patchSize, "Patches" },
+    { record.stepHoles, record.hasCodes ? record.stepCount : 0, "StepHoles" },
+    { record.codes, record.hasCodes ? 1 : 0, "HoleCodes" },
+    { record.stepShapes, record.hasCodes ? 0 : record.stepCount, "StepShapes" },
+    { record.shapeOffsets, record.hasCodes ? 0 : 1, "ShapeOffsets" },
+    { record.shapes, record.hasCodes ? 0 : record.shapeCount, "Shapes" },
     { record.baseSources, record.hasSources ? record.baseCellCount : 0, "BaseSources" },
     { record.lostSources, record.hasSources ? record.lostSourceSize : 0, "LostSources" },
     { baseCells, record.baseCellCount, "cells of the coarse mesh" } };
@@ -168,8 +172,150 @@ Outcome checkShape(const RecordView& record, Index shape)
   return {};
 }
 
+Outcome checkShapes(const RecordView& record)
+{
+  if (record.shapeOffsets[0] != 0)
+  {
+    return damaged("ShapeOffsets", 0, "must start at 0");
+  }
+  for (Index shape = 0; shape < record.shapeCount; ++shape)
+  {
+    if (record.shapeOffsets[shape + 1] < record.shapeOffsets[shape])
+    {
+      return damaged("ShapeOffsets", shape + 1, "decreases");
+    }
+  }
+  for (Index shape = 0; shape < record.shapeCount; ++shape)
+  {
+    if (Outcome o = checkShape(record, shape); !o)
+    {
+      return o;
+    }
+  }
+  return {};
+}
+
+// What the form of a step takes of the record's other arrays.
+struct StepCounts
+{
+  int oldCount = 0;
+  int newCount = 0;
+  int extra = 0;
+  int lostSources = 0; // if there are sources
+};
+
+// The steps of a record with shapes, in their order; the shapes are sound.
+class ShapeSteps
+{
+public:
+  explicit ShapeSteps(const RecordView& record)
+    : record_(record)
+  {
+  }
+
+  Outcome next(StepCounts& counts)
+  {
+    const Index step = this->step_++;
+    const Index shape = this->record_.stepShapes[step];
+    if (shape < 0 || shape >= this->record_.shapeCount)
+    {
+      return damaged("StepShapes", step, "no such shape");
+    }
+    const unsigned char* bytes = this->record_.shapes + this->record_.shapeOffsets[shape];
+    counts.oldCount = bytes[0];
+    counts.newCount = bytes[1];
+    counts.extra = bytes[2];
+    if (this->record_.hasSources)
+    {
+      counts.lostSources = lostSourceCount(bytes, this->record_.cornersPerCell);
+    }
+    return {};
+  }
+
+  Outcome finish() const { return {}; }
+
+private:
+  const RecordView& record_;
+  Index step_ = 0;
+};
+
+// The steps of a record with codes, which are checked on the way.
+class CodeSteps
+{
+public:
+  explicit CodeSteps(const RecordView& record)
+    : record_(record)
+  {
+  }
+
+  Outcome next(StepCounts& counts)
+  {
+    const HoleCounts& hole = kHoles[this->record_.stepHoles[this->step_]];
+    if (hole.oldCount == 0)
+    {
+      return damaged("StepHoles", this->step_, "no such hole");
+    }
+    const std::int64_t begin = this->position_;
+    this->position_ += hole.codeSize(this->record_.hasSources);
+    ++this->step_;
+    if (this->position_ >= this->record_.codeSize)
+    {
+      return damaged("HoleCodes", this->record_.codeSize, "too short");
+    }
+    const HoleCode code(hole, this->record_.codes + begin);
+    for (int i = 0; i < hole.oldCount; ++i)
+    {
+      if (code.corner(i) >= kTriangleCorners)
+      {
+        return damaged("HoleCodes", begin, "unknown corner");
+      }
+    }
+    std::array<bool, kMaximumPolygon> gone{};
+    for (int i = 0; i < hole.newCount; ++i)
+    {
+      const int ear = code.ear(i);
+      if (ear >= hole.ringSize || gone[ear])
+      {
+        return damaged("HoleCodes", begin, "an ear is not in the hole");
+      }
+      gone[ear] = true;
+    }
+    if (this->record_.hasSources)
+    {
+      std::uint64_t heirs = 0;
+      for (int i = 0; i < hole.newCount; ++i)
+      {
+        if (code.source(i) >= hole.oldCount)
+        {
+          return damaged("HoleCodes", begin, "unknown source");
+        }
+        heirs |= std::uint64_t{ 1 } << code.source(i);
+      }
+      counts.lostSources = hole.oldCount - countBits(heirs);
+    }
+    counts.oldCount = hole.oldCount;
+    counts.newCount = hole.newCount;
+    counts.extra = hole.extra;
+    return {};
+  }
+
+  Outcome finish() const
+  {
+    return this->position_ + 1 == this->record_.codeSize
+      ? Outcome{}
+      : damaged("HoleCodes", this->position_, "too long");
+  }
+
+private:
+  const RecordView& record_;
+  Index step_ = 0;
+  std::int64_t position_ = 0;
+};
+
+template <typename Steps>
 Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
 {
+  Steps steps(record);
   std::int64_t position = 0;
   std::int64_t lost = 0;
   std::int64_t cells = record.baseCellCount;
@@ -179,19 +325,16 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
     {
       return cancelled();
     }
-    const Index shape = record.stepShapes[step];
-    if (shape < 0 || shape >= record.shapeCount)
+    StepCounts counts;
+    if (Outcome o = steps.next(counts); !o)
     {
-      return damaged("StepShapes", step, "no such shape");
+      return o;
     }
-    const unsigned char* bytes = record.shapes + record.shapeOffsets[shape];
-    const int newCount = bytes[1];
-    const int extra = bytes[2];
-    if (position + newCount + extra > record.patchSize)
+    if (position + counts.newCount + counts.extra > record.patchSize)
     {
       return damaged("Patches", record.patchSize, "too short");
     }
-    for (int i = 0; i < newCount; ++i)
+    for (int i = 0; i < counts.newCount; ++i)
     {
       const Index slot = record.patches[position + i];
       if (slot < 0 || slot >= cells)
@@ -206,8 +349,8 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
         }
       }
     }
-    position += newCount;
-    for (int i = 0; i < extra; ++i)
+    position += counts.newCount;
+    for (int i = 0; i < counts.extra; ++i)
     {
       const Index node = record.patches[position + i];
       if (node < 0 || node >= record.baseNodeCount + step)
@@ -215,17 +358,18 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
         return damaged("Patches", position + i, "no such node");
       }
     }
-    position += extra;
-    cells += bytes[0] - newCount;
-    if (record.hasSources)
-    {
-      lost += lostSourceCount(bytes, record.cornersPerCell);
-    }
+    position += counts.extra;
+    cells += counts.oldCount - counts.newCount;
+    lost += counts.lostSources;
     const float error = record.stepErrors[step];
     if (!(error >= 0.0F) || (step > 0 && error > record.stepErrors[step - 1]))
     {
       return damaged("StepErrors", step, "errors must not increase from step to step");
     }
+  }
+  if (Outcome o = steps.finish(); !o)
+  {
+    return o;
   }
   if (position != record.patchSize)
   {
@@ -233,7 +377,8 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
   }
   if (cells != record.cellCount)
   {
-    return damaged("StepShapes", record.stepCount, "the steps do not lead to all cells");
+    return damaged(record.hasCodes ? "StepHoles" : "StepShapes", record.stepCount,
+      "the steps do not lead to all cells");
   }
   if (record.hasSources && lost != record.lostSourceSize)
   {
@@ -292,12 +437,16 @@ RecordView Record::view() const
   v.cellCount = this->cellCount;
   v.baseNodeCount = this->baseNodeCount;
   v.baseCellCount = this->baseCellCount;
-  v.stepCount = static_cast<Index>(this->stepShapes.size());
+  v.stepCount = static_cast<Index>(this->stepErrors.size());
   v.shapeCount = static_cast<Index>(this->shapeOffsets.size()) - 1;
   v.cornersPerCell = this->cornersPerCell;
+  v.hasCodes = this->hasCodes;
   v.hasSources = this->hasSources;
   v.nodeOrder = this->nodeOrder.data();
   v.cellOrder = this->cellOrder.data();
+  v.stepHoles = this->stepHoles.data();
+  v.codes = this->codes.data();
+  v.codeSize = static_cast<std::int64_t>(this->codes.size());
   v.stepShapes = this->stepShapes.data();
   v.stepErrors = this->stepErrors.data();
   v.patches = this->patches.data();
@@ -316,7 +465,8 @@ std::size_t Record::byteSize() const
     (this->nodeOrder.size() + this->cellOrder.size() + this->stepShapes.size() +
       this->patches.size() + this->shapeOffsets.size() + this->baseSources.size() +
       this->lostSources.size()) +
-    sizeof(float) * this->stepErrors.size() + this->shapes.size();
+    sizeof(float) * this->stepErrors.size() + this->shapes.size() + this->stepHoles.size() +
+    this->codes.size();
 }
 
 Outcome validateRecord(
@@ -326,7 +476,8 @@ Outcome validateRecord(
     record.baseCellCount < 0 || record.shapeCount < 0 || record.patchSize < 0 ||
     record.lostSourceSize < 0 || record.baseCellCount > record.cellCount ||
     record.stepCount != record.nodeCount - record.baseNodeCount || record.stepCount < 0 ||
-    record.cornersPerCell < kTriangleCorners || record.cornersPerCell > kMostCorners)
+    record.cornersPerCell < kTriangleCorners || record.cornersPerCell > kMostCorners ||
+    (record.hasCodes && (record.cornersPerCell != kTriangleCorners || record.codeSize < 1)))
   {
     return { Status::InvalidRecord, "The record's counts contradict each other." };
   }
@@ -346,23 +497,9 @@ Outcome validateRecord(
   {
     return o;
   }
-  if (record.shapeOffsets[0] != 0)
+  if (Outcome o = record.hasCodes ? Outcome{} : checkShapes(record); !o)
   {
-    return damaged("ShapeOffsets", 0, "must start at 0");
-  }
-  for (Index shape = 0; shape < record.shapeCount; ++shape)
-  {
-    if (record.shapeOffsets[shape + 1] < record.shapeOffsets[shape])
-    {
-      return damaged("ShapeOffsets", shape + 1, "decreases");
-    }
-  }
-  for (Index shape = 0; shape < record.shapeCount; ++shape)
-  {
-    if (Outcome o = checkShape(record, shape); !o)
-    {
-      return o;
-    }
+    return o;
   }
   const int corners = record.cornersPerCell;
   const bool mixed = corners == kMostCorners;
@@ -393,7 +530,9 @@ Outcome validateRecord(
       return o;
     }
   }
-  return checkSteps(record, progress.part(0.5, 1.0));
+  const MonitorShare rest = progress.part(0.5, 1.0);
+  return record.hasCodes ? checkSteps<CodeSteps>(record, rest)
+                         : checkSteps<ShapeSteps>(record, rest);
 }
 
 // Steps in the order of removal and in original numbers; finish() reverses and renumbers.

@@ -20,20 +20,25 @@
 /// cells the first of all slots, and a level is handed out by copying prefixes. `nodeOrder` and
 /// `cellOrder` lead back to the original numbers.
 ///
-/// **A step** is a shape and a patch. The *shape* gives the corners of the old and the new cells in
-/// numbers local to the patch (0 = the removed node); equal shapes are stored once. The *patch*
-/// lists the slots of the new cells, then the nodes that no new cell has (only when the shape says
-/// so). The remaining old cells have the slots just behind the end of the coarser level. All other
-/// local numbers are found by reading the cells themselves, in either direction.
+/// **A step** is a form and a patch. The *form* says which corners of the patch's old and new cells
+/// are the same node. The *patch* lists the slots of the new cells, then the nodes that no new cell
+/// has (only when the form says so). The remaining old cells have the slots just behind the end of
+/// the coarser level. All other nodes are found by reading the cells themselves, in either
+/// direction.
+///
+/// **Forms** are kept in one of two ways, the same for all steps of a record:
+///   *codes*   a few bits a step, see hole_code.h: node removal from triangles
+///   *shapes*  corners in numbers local to the patch (0 = the removed node), equal shapes once: all
+///             kinds of steps, and the triangles of older files
 ///
 /// Source: [K03] S. Krivograd, G. Hren, B. Zalik, A. Jezernik: A Fast Triangular-Mesh
 /// Decimation-and-Undecimation Algorithm for Transferring FEM Results via the Web, Journal of
 /// Mechanical Engineering 49 (2003), section 2 and fig. 6 (two lists at each removed node: removed
-/// cells and new cells). Kept here as shapes, which needs a third of the memory of the lists.
+/// cells and new cells). Kept here as forms, which needs a third of the memory of the lists.
 ///
-/// Memory: about 36 bytes a removed node on triangle meshes (shape 4, slots 16, error 4, original
-/// numbers 12), plus the table of shapes: 1 to 10 bytes a removed node where nodes have about six
-/// neighbours, up to 75 where an order that ignores the mesh (Angle to XY Plane) gives them many.
+/// Memory: 16 bytes a removed node (error 4, original numbers 12), 4 for each new cell of a step (3
+/// to 4 of them, 8 with an order that ignores the mesh such as Angle to XY Plane on a fine grid),
+/// and the codes: 4 to 5 bytes, or 8 there. Shapes take 4 bytes and the table of shapes.
 
 #ifndef UNDECIMATE_CORE_RECORD_H
 #define UNDECIMATE_CORE_RECORD_H
@@ -60,6 +65,8 @@ constexpr unsigned char kNoLocal = 255;
 
 /// A record as flat arrays in somebody's memory (see the file comment for their meaning).
 ///
+/// Codes: the code of each step from hole_code.h, step after step, and one byte 0 behind them.
+///
 /// The table of shapes: shape s is the bytes [shapeOffsets[s], shapeOffsets[s + 1]) of `shapes`:
 ///   old, new, extra                  numbers of old cells, new cells, nodes listed in the patch
 ///   old * cornersPerCell bytes       local corners of the old cells; the first `new` of them have
@@ -77,18 +84,22 @@ struct RecordView
   Index stepCount = 0;     ///< nodeCount - baseNodeCount
   Index shapeCount = 0;
   int cornersPerCell = 3;  ///< 3, or 4 in meshes that have quads
+  bool hasCodes = false;   ///< the steps have codes, else shapes; codes have 3 corners a cell
   bool hasSources = false; ///< the source of each cell's values is recorded
 
   const Index* nodeOrder = nullptr;  ///< nodeCount: original number of a node
   const Index* cellOrder = nullptr;  ///< cellCount: original number of a slot's cell
-  const Index* stepShapes = nullptr; ///< stepCount
   const float* stepErrors = nullptr; ///< stepCount, never increasing: error before step j is undone
   const Index* patches = nullptr;    ///< patchSize: slots and extra nodes, step after step
-  const Index* shapeOffsets = nullptr;   ///< shapeCount + 1
-  const unsigned char* shapes = nullptr; ///< shapeOffsets[shapeCount] bytes
-  const Index* baseSources = nullptr;    ///< baseCellCount if hasSources: original cell number
+  const unsigned char* stepHoles = nullptr; ///< stepCount if hasCodes, see hole_code.h
+  const unsigned char* codes = nullptr;     ///< codeSize bytes if hasCodes
+  const Index* stepShapes = nullptr;        ///< stepCount unless hasCodes, as the next two
+  const Index* shapeOffsets = nullptr;      ///< shapeCount + 1
+  const unsigned char* shapes = nullptr;    ///< shapeOffsets[shapeCount] bytes
+  const Index* baseSources = nullptr;       ///< baseCellCount if hasSources: original cell number
   const Index* lostSources = nullptr; ///< lostSourceSize if hasSources: of old cells without heir
   std::int64_t patchSize = 0;
+  std::int64_t codeSize = 0;
   std::int64_t lostSourceSize = 0;
 };
 
@@ -100,13 +111,16 @@ struct Record
   Index baseNodeCount = 0;
   Index baseCellCount = 0;
   int cornersPerCell = 3;
+  bool hasCodes = false;
   bool hasSources = false;
 
   std::vector<Index> nodeOrder;
   std::vector<Index> cellOrder;
-  std::vector<Index> stepShapes;
   std::vector<float> stepErrors;
   std::vector<Index> patches;
+  std::vector<unsigned char> stepHoles;
+  std::vector<unsigned char> codes;
+  std::vector<Index> stepShapes;
   std::vector<Index> shapeOffsets{ 0 };
   std::vector<unsigned char> shapes;
   std::vector<Index> baseSources;
@@ -119,7 +133,7 @@ struct Record
 };
 
 /// Check that a record can be walked without ever leaving its arrays or those of the mesh, whatever
-/// its bytes are: counts, ranges, shapes, order of the errors, permutations.
+/// its bytes are: counts, ranges, forms, order of the errors, permutations.
 /// @param baseCells cornersPerCell * baseCellCount node numbers in record order
 /// @param progress of this call, and cancel
 /// @return InvalidRecord with the array and the entry that is wrong, Cancelled or Ok
@@ -128,6 +142,7 @@ Outcome validateRecord(const RecordView& record, const Index* baseCells,
   const MonitorShare& progress = MonitorShare(nullptr));
 
 /// Written by a decimator, step by step, in original numbers; finish() turns it into record order.
+/// The steps get shapes.
 class RecordBuilder
 {
 public:

@@ -4,6 +4,7 @@
 #include "removal_steps.h"
 
 #include "cell_sources.h"
+#include "hole_code.h"
 #include "large_array.h"
 #include "record_shapes.h"
 
@@ -67,14 +68,9 @@ void setHeader(MeshNode& node, const Header& header)
   std::memcpy(bytesOf(node) + kHeader, &header, sizeof(header));
 }
 
-int newCountOf(const Header& header)
+const HoleCounts& countsOf(const Header& header)
 {
-  return header.boundary ? header.oldCount - 1 : header.oldCount - 2;
-}
-
-int ringSizeOf(const Header& header)
-{
-  return header.boundary ? header.oldCount + 1 : header.oldCount;
+  return kHoles[holeOf(header.oldCount, header.boundary)];
 }
 
 std::size_t partsSize(int oldCount, int newCount, bool hasSources)
@@ -87,9 +83,7 @@ std::size_t partsSize(int oldCount, int newCount, bool hasSources)
 struct Step
 {
   Header header;
-  int oldCount;
-  int newCount;
-  int ringSize;
+  const HoleCounts& counts;
   const unsigned char* corners; // of the node in the old triangles
   const unsigned char* ears;
   const unsigned char* sources;
@@ -97,20 +91,19 @@ struct Step
 
   explicit Step(const MeshNode& node)
     : header(headerOf(node))
-    , oldCount(this->header.oldCount)
-    , newCount(newCountOf(this->header))
-    , ringSize(ringSizeOf(this->header))
+    , counts(countsOf(this->header))
   {
-    const std::size_t size = partsSize(this->oldCount, this->newCount, this->header.hasSources);
+    const std::size_t size =
+      partsSize(this->counts.oldCount, this->counts.newCount, this->header.hasSources);
     const unsigned char* parts = bytesOf(node) + kHeader - size;
     if (this->header.elsewhere)
     {
       std::memcpy(&parts, bytesOf(node) + kHeader - sizeof(parts), sizeof(parts));
     }
     this->corners = parts;
-    this->ears = parts + sizeof(Corner) * this->oldCount;
-    this->sources = this->ears + this->newCount; // if there are some
-    if (this->newCount == 0)
+    this->ears = parts + sizeof(Corner) * this->counts.oldCount;
+    this->sources = this->ears + this->counts.newCount; // if there are some
+    if (this->counts.newCount == 0)
     {
       std::memcpy(this->ring.data(), this->ears, sizeof(this->ring));
     }
@@ -125,100 +118,23 @@ struct Step
   Index slot(int i) const { return triangleOf(this->corner(i)); }
 };
 
-// Neighbours in a polygon: of corner i, i + 1 or i - 1.
-constexpr std::size_t kPolygon = kMaximumPatchCells + 1;
-using Neighbours = std::array<unsigned char, kPolygon>;
-constexpr Neighbours neighboursAt(int distance)
+void writeCode(const Step& step, unsigned char* code)
 {
-  Neighbours neighbours{};
-  for (int i = 0; i < static_cast<int>(kPolygon); ++i)
+  HoleCodeWriter writer(code);
+  for (int i = 0; i < step.counts.oldCount; ++i)
   {
-    neighbours[i] = static_cast<unsigned char>(i + distance);
+    writer.add(static_cast<unsigned>(cornerOf(step.corner(i))), 2);
   }
-  return neighbours;
-}
-
-// The triangles that fill a hole, from the ears: what is left of the polygon is linked.
-template <typename Visit>
-void visitFilling(const Step& step, Visit&& visit)
-{
-  static constexpr Neighbours kNext = neighboursAt(1);
-  static constexpr Neighbours kPrevious = neighboursAt(-1);
-  constexpr int kFew = 16; // most polygons: a copy of known size
-  Neighbours next;
-  Neighbours previous;
-  std::memcpy(next.data(), kNext.data(), kFew);
-  std::memcpy(previous.data(), kPrevious.data(), kFew);
-  if (step.ringSize > kFew)
+  const int bits = step.counts.placeBits;
+  for (int i = 0; i < step.counts.newCount; ++i)
   {
-    next = kNext;
-    previous = kPrevious;
+    writer.add(step.ears[i], bits);
   }
-  next[step.ringSize - 1] = 0;
-  previous[0] = static_cast<unsigned char>(step.ringSize - 1);
-  for (int i = 0; i < step.newCount; ++i)
+  for (int i = 0; step.header.hasSources && i < step.counts.newCount; ++i)
   {
-    const unsigned char ear = step.ears[i];
-    const unsigned char before = previous[ear];
-    const unsigned char behind = next[ear];
-    visit(i, before, ear, behind);
-    next[before] = behind;
-    previous[behind] = before;
+    writer.add(step.sources[i], bits);
   }
-}
-
-// As encode() of record_shapes.h, straight from the ears.
-void encode(const Step& step, EncodedStep& encoded)
-{
-  std::array<unsigned char, kPolygon + 1> local; // of a ring node, the first again at the end
-  std::fill_n(local.begin(), step.ringSize, static_cast<unsigned char>(0));
-  unsigned char locals = 0;
-  const auto number = [&local, &locals](int i)
-  {
-    const bool known = local[i] != 0;
-    locals = static_cast<unsigned char>(locals + (known ? 0 : 1));
-    local[i] = known ? local[i] : locals;
-    return local[i];
-  };
-  ShapeTable::Shape& shape = encoded.shape;
-  unsigned char* oldLocals = shape.data() + 3;
-  unsigned char* newLocals = oldLocals + 3 * step.oldCount;
-  visitFilling(step,
-    [&](int i, unsigned char before, unsigned char ear, unsigned char behind)
-    {
-      newLocals[3 * i] = number(before);
-      newLocals[3 * i + 1] = number(ear);
-      newLocals[3 * i + 2] = number(behind);
-    });
-  encoded.extra = 0;
-  if (step.newCount == 0)
-  {
-    // The two nodes as they stand in the triangle.
-    const int first = cornerOf(step.corner(0)) == 1 ? 1 : 0;
-    encoded.extraNodes[0] = step.ring[first];
-    encoded.extraNodes[1] = step.ring[1 - first];
-    number(first);
-    number(1 - first);
-    encoded.extra = 2;
-  }
-  local[step.ringSize] = local[0];
-  for (int i = 0; i < step.oldCount; ++i)
-  {
-    const int corner = cornerOf(step.corner(i));
-    oldLocals[3 * i + corner] = 0;
-    oldLocals[3 * i + nextCorner(corner)] = local[i];
-    oldLocals[3 * i + previousCorner(corner)] = local[i + 1];
-  }
-  shape[0] = static_cast<unsigned char>(step.oldCount);
-  shape[1] = static_cast<unsigned char>(step.newCount);
-  shape[2] = static_cast<unsigned char>(encoded.extra);
-  encoded.size = 3 + 3 * (step.oldCount + step.newCount);
-  if (step.header.hasSources)
-  {
-    std::copy_n(step.sources, step.newCount, shape.begin() + encoded.size);
-    encoded.size += step.newCount;
-  }
-  padWithZeros(shape, encoded.size);
+  writer.finish();
 }
 
 } // namespace
@@ -316,23 +232,27 @@ int cellsGone(const MeshNode& removed)
 void undo(TriangleTopology& topology, Index removed)
 {
   const Step step(topology.node(removed));
-  std::array<Index, kMaximumPatchCells + 1> ring;
+  std::array<Index, kMaximumPolygon> ring;
   std::copy(step.ring.begin(), step.ring.end(), ring.begin());
-  visitFilling(step,
-    [&](int i, unsigned char before, unsigned char ear, unsigned char behind)
-    {
-      const auto& nodes = topology.triangle(step.slot(i)).nodes;
-      ring[before] = nodes[0];
-      ring[ear] = nodes[1];
-      ring[behind] = nodes[2];
-    });
-  for (int i = 0; i < step.oldCount; ++i)
+  EarCutPolygon polygon(step.counts.ringSize);
+  for (int i = 0; i < step.counts.newCount; ++i)
+  {
+    const auto& nodes = topology.triangle(step.slot(i)).nodes;
+    polygon.cut(step.ears[i],
+      [&](unsigned char before, unsigned char ear, unsigned char behind)
+      {
+        ring[before] = nodes[0];
+        ring[ear] = nodes[1];
+        ring[behind] = nodes[2];
+      });
+  }
+  for (int i = 0; i < step.counts.oldCount; ++i)
   {
     auto& nodes = topology.triangle(step.slot(i)).nodes;
     const int corner = cornerOf(step.corner(i));
     nodes[corner] = removed;
     nodes[nextCorner(corner)] = ring[i];
-    nodes[previousCorner(corner)] = ring[i + 1 == step.ringSize ? 0 : i + 1];
+    nodes[previousCorner(corner)] = ring[i + 1 == step.counts.ringSize ? 0 : i + 1];
   }
 }
 
@@ -352,6 +272,7 @@ public:
   {
     Record& record = this->record_;
     record.hasSources = hasSources;
+    record.hasCodes = true;
     record.nodeCount = topology.nodeCount();
     record.cellCount = topology.triangleCount();
     record.baseNodeCount = record.nodeCount - this->steps_;
@@ -408,11 +329,8 @@ private:
     Index end = 0;
     std::size_t slots = 0; // that they free; later those that the blocks up to this one do
     std::size_t patches = 0;
+    std::size_t codes = 0;
     float error = 0.0F; // the largest one
-    // Shapes by the first step that has them.
-    std::vector<unsigned char> shapes;
-    std::vector<Index> shapeOffsets{ 0 };
-    std::vector<Index> numbers; // of these shapes in the record
   };
 
   void run(Index count, const std::function<void(Index)>& job)
@@ -451,7 +369,7 @@ private:
   void count()
   {
     constexpr Index kSmallest = 1 << 12;
-    constexpr Index kBlocksOfThread = 4; // fewer have fewer shapes twice
+    constexpr Index kBlocksOfThread = 4;
     const Index wanted = this->threads_ ? kBlocksOfThread * this->threads_->count() : 1;
     const Index blocks = std::clamp<Index>(this->steps_ / kSmallest, 1, wanted);
     this->blocks_.resize(blocks);
@@ -465,9 +383,10 @@ private:
           [&](Index /*step*/, const MeshNode& node)
           {
             const Header header = headerOf(node);
-            const int newCount = newCountOf(header);
-            block.slots += header.oldCount - newCount;
-            block.patches += newCount == 0 ? 2 : newCount;
+            const HoleCounts& counts = countsOf(header);
+            block.slots += counts.oldCount - counts.newCount;
+            block.patches += counts.newCount + counts.extra;
+            block.codes += counts.codeSize(header.hasSources);
             block.error = std::max(block.error, header.error);
           });
       });
@@ -477,6 +396,7 @@ private:
       const Block& before = this->blocks_[i - 1];
       block.slots += before.slots;
       block.patches += before.patches;
+      block.codes += before.codes;
       block.error = std::max(block.error, before.error);
     }
     this->record_.baseCellCount =
@@ -525,10 +445,11 @@ private:
           [&](Index /*step*/, const MeshNode& node)
           {
             const Step step(node);
-            end -= step.oldCount - step.newCount;
-            for (int k = step.newCount; k < step.oldCount; ++k)
+            const HoleCounts& counts = step.counts;
+            end -= counts.oldCount - counts.newCount;
+            for (int k = counts.newCount; k < counts.oldCount; ++k)
             {
-              this->slots_[step.slot(k)] = end + k - step.newCount;
+              this->slots_[step.slot(k)] = end + k - counts.newCount;
             }
           });
       });
@@ -577,13 +498,13 @@ private:
         {
           const Step step(node);
           std::array<Index, kMaximumPatchCells> slots;
-          for (int i = 0; i < step.oldCount; ++i)
+          for (int i = 0; i < step.counts.oldCount; ++i)
           {
             slots[i] = step.slot(i);
           }
           const std::size_t before = record.lostSources.size();
-          inheritSources(
-            step.sources, step.oldCount, step.newCount, slots.data(), sources, record.lostSources);
+          inheritSources(step.sources, step.counts.oldCount, step.counts.newCount, slots.data(),
+            sources, record.lostSources);
           counts.push_back(static_cast<unsigned char>(record.lostSources.size() - before));
         });
     }
@@ -604,73 +525,39 @@ private:
   void writeSteps()
   {
     Record& record = this->record_;
-    record.stepShapes.resize(this->steps_);
+    record.stepHoles.resize(this->steps_);
     record.stepErrors.resize(this->steps_);
     record.patches.resize(this->blocks_.back().patches);
-    const Index blocks = static_cast<Index>(this->blocks_.size());
-    this->run(blocks, [this](Index i) { this->writeBlock(i); });
-    if (blocks == 1)
-    {
-      record.shapes.swap(this->blocks_.front().shapes);
-      record.shapeOffsets.swap(this->blocks_.front().shapeOffsets);
-      return;
-    }
-    // Blocks in their order: a shape's number is still that of the first step that has it.
-    ShapeTable table;
-    for (Block& block : this->blocks_)
-    {
-      for (std::size_t i = 0; i + 1 < block.shapeOffsets.size(); ++i)
-      {
-        const Index begin = block.shapeOffsets[i];
-        const int size = block.shapeOffsets[i + 1] - begin;
-        ShapeTable::Shape shape;
-        std::copy_n(block.shapes.begin() + begin, size, shape.begin());
-        padWithZeros(shape, size);
-        block.numbers.push_back(table.number(shape, size, record));
-      }
-      release(block.shapes);
-      release(block.shapeOffsets);
-    }
-    this->run(blocks,
-      [&](Index i)
-      {
-        const Block& block = this->blocks_[i];
-        const auto shapes = record.stepShapes.rbegin();
-        for (Index step = block.begin; step < block.end; ++step)
-        {
-          shapes[step] = block.numbers[shapes[step]];
-        }
-      });
+    record.codes.resize(this->blocks_.back().codes + 1, 0);
+    this->run(static_cast<Index>(this->blocks_.size()), [this](Index i) { this->writeBlock(i); });
   }
 
-  // Shapes are numbered in the block.
   void writeBlock(Index number)
   {
     Record& record = this->record_;
-    Block& block = this->blocks_[number];
-    const bool first = number == 0;
-    float error = first ? 0.0F : this->blocks_[number - std::size_t{ 1 }].error;
-    Index* patch = record.patches.data() + record.patches.size() -
-      (first ? 0 : this->blocks_[number - std::size_t{ 1 }].patches);
-    ShapeTable table;
-    EncodedStep encoded;
-    this->visitSteps(block,
+    const Block before = number == 0 ? Block() : this->blocks_[number - std::size_t{ 1 }];
+    float error = before.error;
+    Index* patch = record.patches.data() + record.patches.size() - before.patches;
+    unsigned char* code = record.codes.data() + record.codes.size() - 1 - before.codes;
+    this->visitSteps(this->blocks_[number],
       [&](Index i, const MeshNode& node)
       {
         const Step step(node);
-        encode(step, encoded);
+        const HoleCounts& counts = step.counts;
         error = std::max(error, step.header.error);
         const Index place = this->steps_ - 1 - i;
-        record.stepShapes[place] = table.number(encoded.shape, encoded.size, block);
+        record.stepHoles[place] = holeOf(step.header.oldCount, step.header.boundary);
         record.stepErrors[place] = error;
-        patch -= step.newCount + encoded.extra;
-        for (int k = 0; k < step.newCount; ++k)
+        code -= counts.codeSize(step.header.hasSources);
+        writeCode(step, code);
+        patch -= counts.newCount + counts.extra;
+        for (int k = 0; k < counts.newCount; ++k)
         {
           patch[k] = this->slots_[step.slot(k)];
         }
-        for (int k = 0; k < encoded.extra; ++k)
+        for (int k = 0; k < counts.extra; ++k)
         {
-          patch[step.newCount + k] = this->nodes_[encoded.extraNodes[k]];
+          patch[k] = this->nodes_[step.ring[k]];
         }
       });
   }

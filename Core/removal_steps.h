@@ -6,7 +6,7 @@
 ///
 /// A removed node's cache line is at hand and no longer needed: a step of up to ten old triangles
 /// fits there, so that a decimation needs no memory for its record until it ends and the triangles
-/// are free. Shapes are made at the end, too, by several threads if there are some.
+/// are free. The record (hole_code.h) is made at the end, by several threads if there are some.
 ///
 /// Memory: none beside the nodes for most steps; about 5 bytes for each old triangle of larger ones
 /// (from 11 triangles on, or from 5 if the positions are to stay).
@@ -89,7 +89,6 @@ void undo(TriangleTopology& topology, Index removed);
 /// @param hasSources as the steps were written
 /// @param[out] baseTriangles the triangles of the coarsest level, in record order
 /// @param threads to share the work out among, or null; the result is the same
-/// @throw std::length_error if the table of shapes would pass 2^31 - 1 bytes
 /// Complexity: O(nodes + triangles).
 Record recordOf(TriangleTopology& topology, std::vector<Index>& removed, bool hasSources,
   std::vector<Index>& baseTriangles, Threads* threads = nullptr);

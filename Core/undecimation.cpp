@@ -5,6 +5,7 @@
 
 #include "compiler.h"
 #include "guarded.h"
+#include "hole_code.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,27 +20,143 @@ namespace
 constexpr int kTriangleCorners = 3;
 constexpr int kMixedCorners = 4;
 
-// A shape's parts (see RecordView).
-template <int Corners>
-struct Shape
-{
-  int oldCount;
-  int newCount;
-  int extra;
-  const unsigned char* oldCells;
-  const unsigned char* newCells;
-  const unsigned char* sources;
+constexpr int kAhead = 48; // entries of patches from a step to the one whose cells are fetched
 
-  Shape(const RecordView& record, Index step)
+// The forms of steps (see RecordView), as the cursor reads them. Each visits the corners of its new
+// and of its old cells: visit(cell, corner, local number). Number 0 is the removed node, and those
+// from firstListed on are the nodes that the patch lists.
+
+// A step that has a shape.
+template <int Corners>
+class ShapeStep
+{
+public:
+  static constexpr int kCorners = Corners;
+
+  static int codeSize(const RecordView& /*record*/, Index /*step*/) { return 0; }
+
+  ShapeStep(const RecordView& record, Index step, std::int64_t /*codePosition*/)
   {
     const unsigned char* bytes = record.shapes + record.shapeOffsets[record.stepShapes[step]];
     this->oldCount = bytes[0];
     this->newCount = bytes[1];
     this->extra = bytes[2];
-    this->oldCells = bytes + 3;
-    this->newCells = this->oldCells + Corners * this->oldCount;
-    this->sources = this->newCells + Corners * this->newCount;
+    this->oldCells_ = bytes + 3;
+    this->newCells_ = this->oldCells_ + Corners * this->oldCount;
+    this->sources_ = this->newCells_ + Corners * this->newCount;
   }
+
+  int oldCount;
+  int newCount;
+  int extra;
+
+  int firstListed() const
+  {
+    int largest = 0;
+    for (int i = 0; this->extra > 0 && i < Corners * this->newCount; ++i)
+    {
+      const int local = this->newCells_[i];
+      if (Corners == kTriangleCorners || local != kNoLocal)
+      {
+        largest = std::max(largest, local);
+      }
+    }
+    return largest + 1;
+  }
+  template <typename Visit>
+  void visitNew(Visit&& visit) const
+  {
+    visitCells(this->newCells_, this->newCount, visit);
+  }
+  template <typename Visit>
+  void visitOld(Visit&& visit) const
+  {
+    visitCells(this->oldCells_, this->oldCount, visit);
+  }
+  int source(int newCell) const { return this->sources_[newCell]; }
+
+private:
+  template <typename Visit>
+  static void visitCells(const unsigned char* locals, int count, Visit& visit)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      for (int corner = 0; corner < Corners; ++corner)
+      {
+        visit(i, corner, *locals++);
+      }
+    }
+  }
+
+  const unsigned char* oldCells_;
+  const unsigned char* newCells_;
+  const unsigned char* sources_;
+};
+
+// A step that has a code: the nodes of the ring are 1, 2, ...
+class CodeStep
+{
+public:
+  static constexpr int kCorners = kTriangleCorners;
+
+  static int codeSize(const RecordView& record, Index step)
+  {
+    return kHoles[record.stepHoles[step]].codeSize(record.hasSources);
+  }
+
+  CodeStep(const RecordView& record, Index step, std::int64_t codePosition)
+    : CodeStep(kHoles[record.stepHoles[step]], record.codes + codePosition)
+  {
+  }
+
+  int oldCount;
+  int newCount;
+  int extra;
+
+  static constexpr int firstListed() { return 1; } // only a hole without new cells lists nodes
+
+  template <typename Visit>
+  void visitNew(Visit&& visit) const
+  {
+    EarCutPolygon polygon(this->ringSize_);
+    for (int i = 0; i < this->newCount; ++i)
+    {
+      polygon.cut(this->code_.ear(i),
+        [&](unsigned char before, unsigned char ear, unsigned char behind)
+        {
+          visit(i, 0, before + 1);
+          visit(i, 1, ear + 1);
+          visit(i, 2, behind + 1);
+        });
+    }
+  }
+  template <typename Visit>
+  void visitOld(Visit&& visit) const
+  {
+    static constexpr int kNext[] = { 1, 2, 0 };
+    static constexpr int kPrevious[] = { 2, 0, 1 };
+    for (int i = 0; i < this->oldCount; ++i)
+    {
+      const int corner = this->code_.corner(i);
+      visit(i, corner, 0);
+      visit(i, kNext[corner], i + 1);
+      visit(i, kPrevious[corner], i + 1 == this->ringSize_ ? 1 : i + 2);
+    }
+  }
+  int source(int newCell) const { return this->code_.source(newCell); }
+
+private:
+  CodeStep(const HoleCounts& counts, const unsigned char* code)
+    : oldCount(counts.oldCount)
+    , newCount(counts.newCount)
+    , extra(counts.extra)
+    , code_(counts, code)
+    , ringSize_(counts.ringSize)
+  {
+  }
+
+  HoleCode code_;
+  int ringSize_;
 };
 
 } // namespace
@@ -65,8 +182,10 @@ Outcome Undecimation::check(
   this->standAtBase(baseCells);
   // Whether the steps fit together shows only when they are walked.
   const MonitorShare walk = progress.part(validation, 1.0);
-  if (Outcome o = record.cornersPerCell == kTriangleCorners ? this->walkAll<kTriangleCorners>(walk)
-                                                            : this->walkAll<kMixedCorners>(walk);
+  if (Outcome o = record.hasCodes ? this->walkAll<CodeStep>(walk)
+        : record.cornersPerCell == kTriangleCorners
+        ? this->walkAll<ShapeStep<kTriangleCorners>>(walk)
+        : this->walkAll<ShapeStep<kMixedCorners>>(walk);
       !o)
   {
     return o;
@@ -76,7 +195,7 @@ Outcome Undecimation::check(
 }
 
 // Undo all steps, as far as they fit together.
-template <int Corners>
+template <typename Step>
 Outcome Undecimation::walkAll(const MonitorShare& walk)
 {
   while (this->steps_ < this->record_.stepCount)
@@ -85,13 +204,13 @@ Outcome Undecimation::walkAll(const MonitorShare& walk)
     {
       return { Status::Cancelled, "Cancelled." };
     }
-    if (!this->isNextStepSound<Corners>())
+    if (!this->isNextStepSound<Step>())
     {
       return { Status::InvalidRecord,
         "Record array 'Patches' is damaged: step " + std::to_string(this->steps_) +
           " does not fit the cells of its level." };
     }
-    this->refine<Corners>();
+    this->refine<Step>();
   }
   return {};
 }
@@ -108,40 +227,31 @@ void Undecimation::standAtBase(const Index* baseCells)
   this->steps_ = 0;
   this->cellCount_ = this->record_.baseCellCount;
   this->patchPosition_ = 0;
+  this->codePosition_ = 0;
   this->lostPosition_ = 0;
 }
 
 // Whether all new cells of the next step agree on what node a local number is. If they do not,
 // coarsen() would not undo refine(), and nodes could stay in levels that do not have them.
-template <int Corners>
+template <typename Step>
 bool Undecimation::isNextStepSound() const
 {
-  const Shape<Corners> shape(this->record_, this->steps_);
+  const Step step(this->record_, this->steps_, this->codePosition_);
   const Index* slots = this->record_.patches + this->patchPosition_;
   const Index* cells = this->cells_.data();
+  const auto nodeAt = [slots, cells](int cell, int corner)
+  { return cells[std::size_t{ Step::kCorners } * slots[cell] + corner]; };
   Index locals[256];
-  for (int i = 0; i < shape.newCount; ++i)
-  {
-    const Index* cell = cells + std::size_t{ Corners } * slots[i];
-    for (int corner = 0; corner < Corners; ++corner)
+  step.visitNew([&](int cell, int corner, int local) { locals[local] = nodeAt(cell, corner); });
+  bool sound = true;
+  step.visitNew(
+    [&](int cell, int corner, int local)
     {
-      locals[shape.newCells[Corners * i + corner]] = cell[corner];
-    }
-  }
-  for (int i = 0; i < shape.newCount; ++i)
-  {
-    const Index* cell = cells + std::size_t{ Corners } * slots[i];
-    for (int corner = 0; corner < Corners; ++corner)
-    {
-      const int local = shape.newCells[Corners * i + corner];
-      if (locals[local] != cell[corner] ||
-        (Corners != kTriangleCorners && (local == kNoLocal) != (cell[corner] == kNone)))
-      {
-        return false;
-      }
-    }
-  }
-  return true;
+      const Index node = nodeAt(cell, corner);
+      sound = sound && locals[local] == node &&
+        (Step::kCorners == kTriangleCorners || (local == kNoLocal) == (node == kNone));
+    });
+  return sound;
 }
 
 bool Undecimation::moveTo(Index steps, Monitor* monitor)
@@ -175,26 +285,30 @@ bool Undecimation::moveTo(Index steps, Monitor* monitor)
 
 void Undecimation::walkTo(Index goal)
 {
-  if (this->record_.cornersPerCell == kTriangleCorners)
+  if (this->record_.hasCodes)
   {
-    this->walk<kTriangleCorners>(goal);
+    this->walk<CodeStep>(goal);
+  }
+  else if (this->record_.cornersPerCell == kTriangleCorners)
+  {
+    this->walk<ShapeStep<kTriangleCorners>>(goal);
   }
   else
   {
-    this->walk<kMixedCorners>(goal);
+    this->walk<ShapeStep<kMixedCorners>>(goal);
   }
 }
 
-template <int Corners>
+template <typename Step>
 void Undecimation::walk(Index goal)
 {
   while (this->steps_ < goal)
   {
-    this->refine<Corners>();
+    this->refine<Step>();
   }
   while (this->steps_ > goal)
   {
-    this->coarsen<Corners>();
+    this->coarsen<Step>();
   }
 }
 
@@ -220,107 +334,92 @@ double Undecimation::error() const
   return this->steps_ < this->record_.stepCount ? this->record_.stepErrors[this->steps_] : 0.0;
 }
 
-// Bring node baseNodeCount + steps_ back: old cells take the place of the new ones.
+// Steps read and write cells here and there: those of later steps are fetched meanwhile.
 template <int Corners>
+void Undecimation::prefetchCells(std::int64_t patchPosition, int count) const
+{
+  const std::int64_t begin = std::max<std::int64_t>(0, patchPosition);
+  const std::int64_t end = std::min(this->record_.patchSize, patchPosition + count);
+  for (std::int64_t i = begin; i < end; ++i)
+  {
+    prefetch(this->cells_.data() + std::ptrdiff_t{ Corners } * this->record_.patches[i]);
+  }
+}
+
+// Bring node baseNodeCount + steps_ back: old cells take the place of the new ones.
+template <typename Step>
 void Undecimation::refine()
 {
-  const Shape<Corners> shape(this->record_, this->steps_);
+  constexpr std::size_t corners = Step::kCorners;
+  const Step step(this->record_, this->steps_, this->codePosition_);
   const Index* slots = this->record_.patches + this->patchPosition_;
+  this->prefetchCells<Step::kCorners>(this->patchPosition_ + kAhead, step.newCount);
+  const auto slotOf = [this, slots, &step](int i)
+  { return i < step.newCount ? slots[i] : this->cellCount_ + i - step.newCount; };
   Index* cells = this->cells_.data();
   Index locals[256];
+  step.visitNew([&](int cell, int corner, int local)
+    { locals[local] = cells[corners * slots[cell] + corner]; });
   locals[kNoLocal] = kNone;
   locals[0] = this->record_.baseNodeCount + this->steps_;
-  int largest = 0;
-  for (int i = 0; i < shape.newCount; ++i)
-  {
-    const Index* cell = cells + std::size_t{ Corners } * slots[i];
-    for (int corner = 0; corner < Corners; ++corner)
-    {
-      const int local = shape.newCells[Corners * i + corner];
-      locals[local] = cell[corner];
-      if (Corners == kTriangleCorners || local != kNoLocal)
-      {
-        largest = std::max(largest, local);
-      }
-    }
-  }
-  for (int i = 0; i < shape.extra; ++i)
-  {
-    locals[largest + 1 + i] = slots[shape.newCount + i];
-  }
-  for (int i = 0; i < shape.oldCount; ++i)
-  {
-    const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
-    Index* cell = cells + std::size_t{ Corners } * slot;
-    for (int corner = 0; corner < Corners; ++corner)
-    {
-      cell[corner] = locals[shape.oldCells[Corners * i + corner]];
-    }
-  }
+  std::copy_n(slots + step.newCount, step.extra, locals + step.firstListed());
+  step.visitOld([&](int cell, int corner, int local)
+    { cells[corners * slotOf(cell) + corner] = locals[local]; });
   if (this->record_.hasSources)
   {
     Index old[kMaximumPatchCells];
-    std::fill_n(old, shape.oldCount, kNone);
-    for (int i = 0; i < shape.newCount; ++i)
+    std::fill_n(old, step.oldCount, kNone);
+    for (int i = 0; i < step.newCount; ++i)
     {
-      old[shape.sources[i]] = this->sources_[slots[i]];
+      old[step.source(i)] = this->sources_[slots[i]];
     }
-    for (int i = 0; i < shape.oldCount; ++i)
+    for (int i = 0; i < step.oldCount; ++i)
     {
-      const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
-      this->sources_[slot] =
+      this->sources_[slotOf(i)] =
         old[i] != kNone ? old[i] : this->record_.lostSources[this->lostPosition_++];
     }
   }
-  this->patchPosition_ += shape.newCount + shape.extra;
-  this->cellCount_ += shape.oldCount - shape.newCount;
+  this->patchPosition_ += step.newCount + step.extra;
+  this->codePosition_ += Step::codeSize(this->record_, this->steps_);
+  this->cellCount_ += step.oldCount - step.newCount;
   ++this->steps_;
 }
 
 // The reverse of refine().
-template <int Corners>
+template <typename Step>
 void Undecimation::coarsen()
 {
+  constexpr std::size_t corners = Step::kCorners;
   --this->steps_;
-  const Shape<Corners> shape(this->record_, this->steps_);
-  this->patchPosition_ -= shape.newCount + shape.extra;
-  this->cellCount_ -= shape.oldCount - shape.newCount;
+  this->codePosition_ -= Step::codeSize(this->record_, this->steps_);
+  const Step step(this->record_, this->steps_, this->codePosition_);
+  this->patchPosition_ -= step.newCount + step.extra;
+  this->cellCount_ -= step.oldCount - step.newCount;
   const Index* slots = this->record_.patches + this->patchPosition_;
+  this->prefetchCells<Step::kCorners>(this->patchPosition_ - kAhead, step.newCount);
+  const auto slotOf = [this, slots, &step](int i)
+  { return i < step.newCount ? slots[i] : this->cellCount_ + i - step.newCount; };
   Index* cells = this->cells_.data();
   Index locals[256];
+  step.visitOld([&](int cell, int corner, int local)
+    { locals[local] = cells[corners * slotOf(cell) + corner]; });
   locals[kNoLocal] = kNone;
-  for (int i = 0; i < shape.oldCount; ++i)
-  {
-    const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
-    const Index* cell = cells + std::size_t{ Corners } * slot;
-    for (int corner = 0; corner < Corners; ++corner)
-    {
-      locals[shape.oldCells[Corners * i + corner]] = cell[corner];
-    }
-  }
-  for (int i = 0; i < shape.newCount; ++i)
-  {
-    Index* cell = cells + std::size_t{ Corners } * slots[i];
-    for (int corner = 0; corner < Corners; ++corner)
-    {
-      cell[corner] = locals[shape.newCells[Corners * i + corner]];
-    }
-  }
+  step.visitNew([&](int cell, int corner, int local)
+    { cells[corners * slots[cell] + corner] = locals[local]; });
   if (this->record_.hasSources)
   {
     Index old[kMaximumPatchCells];
     std::uint64_t heirs = 0;
-    for (int i = 0; i < shape.oldCount; ++i)
+    for (int i = 0; i < step.oldCount; ++i)
     {
-      const Index slot = i < shape.newCount ? slots[i] : this->cellCount_ + i - shape.newCount;
-      old[i] = this->sources_[slot];
+      old[i] = this->sources_[slotOf(i)];
     }
-    for (int i = 0; i < shape.newCount; ++i)
+    for (int i = 0; i < step.newCount; ++i)
     {
-      heirs |= std::uint64_t{ 1 } << shape.sources[i];
-      this->sources_[slots[i]] = old[shape.sources[i]];
+      heirs |= std::uint64_t{ 1 } << step.source(i);
+      this->sources_[slots[i]] = old[step.source(i)];
     }
-    this->lostPosition_ -= shape.oldCount - countBits(heirs);
+    this->lostPosition_ -= step.oldCount - countBits(heirs);
   }
 }
 

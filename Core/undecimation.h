@@ -74,15 +74,17 @@ private:
   Outcome check(const RecordView& record, const Index* baseCells, const MonitorShare& progress);
   void walkTo(Index goal);
   void standAtBase(const Index* baseCells);
-  template <int Corners>
+  template <typename Step>
   bool isNextStepSound() const;
   template <int Corners>
+  void prefetchCells(std::int64_t patchPosition, int count) const;
+  template <typename Step>
   void refine();
-  template <int Corners>
+  template <typename Step>
   void coarsen();
-  template <int Corners>
+  template <typename Step>
   void walk(Index goal);
-  template <int Corners>
+  template <typename Step>
   Outcome walkAll(const MonitorShare& walk);
 
   RecordView record_;
@@ -91,6 +93,7 @@ private:
   Index steps_ = 0;
   Index cellCount_ = 0;
   std::int64_t patchPosition_ = 0; // in record_.patches: first entry of step steps_
+  std::int64_t codePosition_ = 0;  // in record_.codes: that of step steps_
   std::int64_t lostPosition_ = 0;  // in record_.lostSources
 };
 

@@ -310,7 +310,7 @@ TEST(Undecimation, RefusedRecordClosesTheCursor)
   HashQueueDecimationOptions options;
   Decimated decimated(testing::torus(9, 9), options);
   Record damaged = decimated.result.record;
-  damaged.stepShapes[0] = -1;
+  damaged.stepHoles[0] = 0;
   decimated.cursor.moveTo(3);
   EXPECT_EQ(decimated.cursor.open(damaged.view(), decimated.result.baseTriangles.data()).status,
     Status::InvalidRecord);

@@ -317,13 +317,15 @@ std::string readHeader(vtkPolyData* mesh, std::int64_t* header, const MonitorSha
   {
     return damaged("the checksum of its arrays is wrong");
   }
-  if (header[kCornersPerCell] > 3 && header[kVersion] < 2)
+  if (header[kCornersPerCell] > 3 && header[kVersion] != 2)
   {
-    return damaged("version 1 has " + std::to_string(header[kCornersPerCell]) + " corners a cell");
+    return damaged("version " + std::to_string(header[kVersion]) + " has " +
+      std::to_string(header[kCornersPerCell]) + " corners a cell");
   }
   for (int field = kNodeCount; field < kPointsFingerprint; ++field)
   {
-    const bool wide = field == kPatchSize || field == kLostSourceSize;
+    const bool wide = field == kPatchSize || field == kLostSourceSize ||
+      (field == kFormCount && header[kVersion] > 2);
     if (header[field] < 0 || (!wide && header[field] > std::numeric_limits<Index>::max()))
     {
       return damaged(
@@ -477,7 +479,7 @@ void readArrays(FieldReader& reader, RecordFields& record)
   view.baseNodeCount = static_cast<Index>(header[kBaseNodeCount]);
   view.baseCellCount = static_cast<Index>(header[kBaseCellCount]);
   view.stepCount = view.nodeCount - view.baseNodeCount;
-  view.shapeCount = static_cast<Index>(header[kShapeCount]);
+  view.hasCodes = header[kVersion] > 2;
   view.patchSize = header[kPatchSize];
   view.cornersPerCell = static_cast<int>(header[kCornersPerCell]);
   view.hasSources = header[kHasSources] != 0;
@@ -485,14 +487,24 @@ void readArrays(FieldReader& reader, RecordFields& record)
 
   view.nodeOrder = reader.read<Index>("NodeOrder", view.nodeCount);
   view.cellOrder = reader.read<Index>("CellOrder", view.cellCount);
-  view.stepShapes = reader.read<Index>("StepShapes", view.stepCount);
   view.stepErrors = reader.read<float>("StepErrors", view.stepCount);
   view.patches = reader.read<Index>("Patches", view.patchSize);
-  view.shapeOffsets = reader.read<Index>("ShapeOffsets", view.shapeCount + std::int64_t{ 1 });
-  if (view.shapeOffsets)
+  if (view.hasCodes)
   {
-    view.shapes =
-      reader.read<unsigned char>("Shapes", std::max<Index>(0, view.shapeOffsets[view.shapeCount]));
+    view.codeSize = header[kFormCount];
+    view.stepHoles = reader.read<unsigned char>("StepHoles", view.stepCount);
+    view.codes = reader.read<unsigned char>("HoleCodes", view.codeSize);
+  }
+  else
+  {
+    view.shapeCount = static_cast<Index>(header[kFormCount]);
+    view.stepShapes = reader.read<Index>("StepShapes", view.stepCount);
+    view.shapeOffsets = reader.read<Index>("ShapeOffsets", view.shapeCount + std::int64_t{ 1 });
+    if (view.shapeOffsets)
+    {
+      view.shapes = reader.read<unsigned char>(
+        "Shapes", std::max<Index>(0, view.shapeOffsets[view.shapeCount]));
+    }
   }
   view.baseSources =
     reader.read<Index>("BaseSources", view.hasSources ? view.baseCellCount : Index{ 0 });
@@ -559,12 +571,13 @@ RecordArrays::RecordArrays(Record& record)
   : fields_(vtkSmartPointer<vtkFieldData>::New())
 {
   std::int64_t* header = this->header_;
-  header[kVersion] = record.cornersPerCell == 3 ? 1 : 2;
+  header[kVersion] = record.hasCodes ? 3 : record.cornersPerCell == 3 ? 1 : 2;
   header[kNodeCount] = record.nodeCount;
   header[kCellCount] = record.cellCount;
   header[kBaseNodeCount] = record.baseNodeCount;
   header[kBaseCellCount] = record.baseCellCount;
-  header[kShapeCount] = static_cast<std::int64_t>(record.shapeOffsets.size()) - 1;
+  header[kFormCount] = record.hasCodes ? static_cast<std::int64_t>(record.codes.size())
+                                       : static_cast<std::int64_t>(record.shapeOffsets.size()) - 1;
   header[kPatchSize] = static_cast<std::int64_t>(record.patches.size());
   header[kLostSourceSize] = static_cast<std::int64_t>(record.lostSources.size());
   header[kCornersPerCell] = record.cornersPerCell;
@@ -572,11 +585,19 @@ RecordArrays::RecordArrays(Record& record)
   vtkFieldData* fields = this->fields_;
   write<vtkTypeInt32Array>(fields, "NodeOrder", record.nodeOrder);
   write<vtkTypeInt32Array>(fields, "CellOrder", record.cellOrder);
-  write<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes);
   write<vtkFloatArray>(fields, "StepErrors", record.stepErrors);
   write<vtkTypeInt32Array>(fields, "Patches", record.patches);
-  write<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets);
-  write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
+  if (record.hasCodes)
+  {
+    write<vtkUnsignedCharArray>(fields, "StepHoles", record.stepHoles);
+    write<vtkUnsignedCharArray>(fields, "HoleCodes", record.codes);
+  }
+  else
+  {
+    write<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes);
+    write<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets);
+    write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
+  }
   write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
   write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
   for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
@@ -635,10 +656,11 @@ bool shareRecordArrays(const RecordFields& a, const RecordFields& b)
   const RecordView& w = b.view;
   // Of the same arrays, and so of the same lengths; whoever writes into one makes it newer.
   return v.stepCount > 0 && v.nodeOrder == w.nodeOrder && v.cellOrder == w.cellOrder &&
-    v.stepShapes == w.stepShapes && v.stepErrors == w.stepErrors && v.patches == w.patches &&
-    v.shapeOffsets == w.shapeOffsets && v.shapes == w.shapes && v.baseSources == w.baseSources &&
-    v.lostSources == w.lostSources && a.header[kCornersPerCell] == b.header[kCornersPerCell] &&
-    a.keptTimes == b.keptTimes && a.baseCells == b.baseCells;
+    v.stepErrors == w.stepErrors && v.patches == w.patches && v.stepHoles == w.stepHoles &&
+    v.codes == w.codes && v.stepShapes == w.stepShapes && v.shapeOffsets == w.shapeOffsets &&
+    v.shapes == w.shapes && v.baseSources == w.baseSources && v.lostSources == w.lostSources &&
+    a.header[kCornersPerCell] == b.header[kCornersPerCell] && a.keptTimes == b.keptTimes &&
+    a.baseCells == b.baseCells;
 }
 
 KnownFingerprints knownFingerprints(const RecordFields& fields)

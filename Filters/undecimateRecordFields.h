@@ -13,9 +13,11 @@
 /// | .Header            | int64           | see HeaderField |
 /// | .NodeOrder         | int32           | a node: its original number |
 /// | .CellOrder         | int32           | a triangle slot: its original number among the triangles |
-/// | .StepShapes        | int32           | a step: its shape |
 /// | .StepErrors        | float           | a step: error before it is undone |
 /// | .Patches           | int32           | slots and extra nodes, step after step |
+/// | .StepHoles         | unsigned char   | a step: its hole (version 3, as .HoleCodes) |
+/// | .HoleCodes         | unsigned char   | the codes of the steps |
+/// | .StepShapes        | int32           | a step: its shape (versions 1 and 2, as the next two) |
 /// | .ShapeOffsets      | int32           | where each shape starts in .Shapes, and the end |
 /// | .Shapes            | unsigned char   | the shapes |
 /// | .BaseSources       | int32           | a triangle of the coarse mesh: original triangle shown |
@@ -50,22 +52,23 @@ namespace undecimate
 namespace filters
 {
 
-/// Newest format version. Meshes of triangles are written in version 1; version 2 differs in
-/// that it may have four corners a cell, for meshes of triangles and quads.
-constexpr std::int64_t kRecordVersion = 2;
+/// Newest format version, in which meshes of triangles are written: the steps have codes. Meshes of
+/// triangles and quads are written in version 2: shapes, and four corners a cell. Version 1, of
+/// earlier releases, has shapes and three corners.
+constexpr std::int64_t kRecordVersion = 3;
 
 /// Entries of the array .Header.
 enum HeaderField
 {
-  kVersion = 0,         ///< 1 or 2, see kRecordVersion; always the first entry
+  kVersion = 0,         ///< 1 to 3, see kRecordVersion; always the first entry
   kNodeCount,           ///< of level 1
   kCellCount,           ///< triangles (and quads) of level 1
   kBaseNodeCount,       ///< of level 0
   kBaseCellCount,       ///< triangles (and quads) of level 0
-  kShapeCount,          ///< shapes of steps
+  kFormCount,           ///< shapes; in version 3 bytes of .HoleCodes
   kPatchSize,           ///< values of .Patches
   kLostSourceSize,      ///< values of .LostSources
-  kCornersPerCell,      ///< 3; in version 2 also 4
+  kCornersPerCell,      ///< 3, in version 2 also 4
   kHasSources,          ///< 1 if sources are recorded (there is cell data)
   kVertCount,           ///< vertex cells, the same at all levels
   kLineCount,           ///< line cells, the same at all levels

@@ -41,6 +41,18 @@ vtkSmartPointer<vtkPolyData> smallRecord()
   return decimated(makeGrid(options), 0.8);
 }
 
+// Written by Undecimate before there were codes: a grid of 81 nodes with one nodal array and one of
+// its cells, decimated by Angle to XY Plane; "original", "coarse", and "half" at level 0.5.
+vtkSmartPointer<vtkPolyData> storedVersion1(const char* name)
+{
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(
+    (std::string(UNDECIMATE_FILTER_TEST_DIR "/version1/") + name + ".vtp").c_str());
+  reader->Update();
+  EXPECT_GT(reader->GetOutput()->GetNumberOfPoints(), 0) << name;
+  return reader->GetOutput();
+}
+
 std::int64_t* header(vtkPolyData* mesh)
 {
   return static_cast<std::int64_t*>(
@@ -136,12 +148,27 @@ TEST(RecordFields, AMeshThatWasChangedInAFileIsRefused)
   EXPECT_NE(error.find("point array 'scalar'"), std::string::npos) << error;
 }
 
+TEST(RecordFields, FilesOfVersion1AreRead)
+{
+  vtkSmartPointer<vtkPolyData> coarse = storedVersion1("coarse");
+  ASSERT_EQ(header(coarse)[kVersion], 1);
+  ASSERT_EQ(header(coarse)[kHasSources], 1);
+  EXPECT_EQ(
+    differences(undecimated(coarse, 1.0), storedVersion1("original"), /*fileTypes=*/true), "");
+  EXPECT_EQ(differences(undecimated(coarse, 0.5), storedVersion1("half"), /*fileTypes=*/true), "");
+}
+
+TEST(RecordFields, TrianglesAreWrittenInVersion3)
+{
+  EXPECT_EQ(header(smallRecord())[kVersion], 3);
+}
+
 TEST(RecordFields, ANewerVersionIsRefused)
 {
   vtkSmartPointer<vtkPolyData> coarse = smallRecord();
-  header(coarse)[kVersion] = 3;
+  header(coarse)[kVersion] = 4;
   const std::string error = undecimationError(coarse);
-  EXPECT_NE(error.find("format version 3"), std::string::npos) << error;
+  EXPECT_NE(error.find("format version 4"), std::string::npos) << error;
   EXPECT_NE(error.find("Update Undecimate"), std::string::npos) << error;
 }
 
@@ -244,9 +271,15 @@ bool survives(vtkPolyData* coarse)
   return true;
 }
 
-TEST(RecordFields, EveryHeaderEntryMayBeWrong)
+class RecordsOfAllForms : public ::testing::TestWithParam<int>
 {
-  vtkSmartPointer<vtkPolyData> original = smallRecord();
+protected:
+  vtkSmartPointer<vtkPolyData> original =
+    GetParam() == 1 ? storedVersion1("coarse") : smallRecord();
+};
+
+TEST_P(RecordsOfAllForms, EveryHeaderEntryMayBeWrong)
+{
   EXPECT_TRUE(survives(original));
   int refused = 0;
   for (int field = 1; field < kHeaderSize; ++field)
@@ -267,12 +300,17 @@ TEST(RecordFields, EveryHeaderEntryMayBeWrong)
   EXPECT_GT(refused, 100);
 }
 
-TEST(RecordFields, SignedDamageNeverCrashes)
+TEST_P(RecordsOfAllForms, SignedDamageNeverCrashes)
 {
-  vtkSmartPointer<vtkPolyData> original = smallRecord();
   std::mt19937 random(11);
-  const std::vector<std::string> names = { "NodeOrder", "CellOrder", "StepShapes", "StepErrors",
-    "Patches", "ShapeOffsets", "Shapes", "BaseSources", "LostSources", "ArrayFingerprints" };
+  std::vector<std::string> names = { "NodeOrder", "CellOrder", "StepErrors", "Patches",
+    "BaseSources", "LostSources", "ArrayFingerprints" };
+  for (const char* name : GetParam() == 1
+      ? std::vector<const char*>{ "StepShapes", "ShapeOffsets", "Shapes" }
+      : std::vector<const char*>{ "StepHoles", "HoleCodes" })
+  {
+    names.emplace_back(name);
+  }
   int refused = 0;
   for (const std::string& name : names)
   {
@@ -296,9 +334,8 @@ TEST(RecordFields, SignedDamageNeverCrashes)
   EXPECT_GT(refused, 200);
 }
 
-TEST(RecordFields, ArraysMayBeMissingOrOfAnotherKind)
+TEST_P(RecordsOfAllForms, ArraysMayBeMissingOrOfAnotherKind)
 {
-  vtkSmartPointer<vtkPolyData> original = smallRecord();
   for (int i = 0; i < original->GetFieldData()->GetNumberOfArrays(); ++i)
   {
     const std::string name = original->GetFieldData()->GetAbstractArray(i)->GetName();
@@ -338,5 +375,8 @@ TEST(RecordFields, ArraysMayBeMissingOrOfAnotherKind)
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(RecordFields, RecordsOfAllForms, ::testing::Values(1, 3),
+  [](const ::testing::TestParamInfo<int>& info) { return "Version" + std::to_string(info.param); });
 
 } // namespace

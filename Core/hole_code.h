@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file hole_code.h
+/// @brief The removal of a node from triangles in a few bits: how the record keeps it.
+///
+/// A step of node removal is a hole and the ears that filled it, and nothing else: the *ring* of r
+/// nodes around the node, old triangle i with the ring's nodes i and i + 1, and new triangles, each
+/// an ear of what the ones before have left of the ring's polygon. With n old triangles there are
+/// n - 2 new ones and r = n in the interior, n - 1 new ones and r = n + 1 at the boundary, where
+/// the ring is open.
+///
+/// A step has a byte, the *hole*: n, plus kOpenHole at the boundary. Its code are these bits, from
+/// the lowest bit of the first byte upwards, filled up to whole bytes:
+///   2 bits for each old triangle      corner (0, 1, 2) at which it has the node
+///   w bits for each new triangle      the ear, a place in the ring, that it cuts off
+///   w bits for each new triangle      with sources: the old triangle whose values it shows
+/// w is the number of bits of r - 1. New triangle i has the ring's nodes before, at and behind its
+/// ear, in this order, in the slot of old triangle i.
+///
+/// Memory: 1 + (2 n + w (n - 2)) / 8 bytes a step: 4 with five or six neighbours, 8 with ten.
+
+#ifndef UNDECIMATE_CORE_HOLE_CODE_H
+#define UNDECIMATE_CORE_HOLE_CODE_H
+
+#include "record.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+namespace undecimate
+{
+
+/// Most nodes around a hole.
+constexpr int kMaximumPolygon = kMaximumPatchCells + 1;
+
+/// In the byte of a hole: its node is on the boundary.
+constexpr unsigned char kOpenHole = 128;
+
+/// Sizes of a hole.
+struct HoleCounts
+{
+  unsigned char oldCount = 0; ///< 0: there is no such hole, and the rest is 0, too
+  unsigned char newCount = 0;
+  unsigned char ringSize = 0;
+  unsigned char extra = 0;     ///< nodes in the patch: of a triangle that leaves nothing behind
+  unsigned char placeBits = 0; ///< w
+  unsigned char sizes[2] = {}; ///< bytes of the code without and with sources
+
+  /// @param hole the byte; all values are sound
+  constexpr explicit HoleCounts(unsigned char hole)
+  {
+    const bool boundary = (hole & kOpenHole) != 0;
+    const int n = hole & (kOpenHole - 1);
+    if (n < (boundary ? 1 : 3) || n > kMaximumPatchCells)
+    {
+      return;
+    }
+    this->oldCount = static_cast<unsigned char>(n);
+    this->newCount = static_cast<unsigned char>(boundary ? n - 1 : n - 2);
+    this->ringSize = static_cast<unsigned char>(boundary ? n + 1 : n);
+    this->extra = this->newCount == 0 ? 2 : 0;
+    for (int bits = 1; this->placeBits == 0; ++bits)
+    {
+      this->placeBits = static_cast<unsigned char>(this->ringSize <= 1 << bits ? bits : 0);
+    }
+    for (int parts = 1; parts <= 2; ++parts)
+    {
+      this->sizes[parts - 1] =
+        static_cast<unsigned char>((2 * n + parts * this->newCount * this->placeBits + 7) / 8);
+    }
+  }
+
+  int codeSize(bool hasSources) const { return this->sizes[hasSources ? 1 : 0]; }
+};
+
+/// The sizes of all holes, made once.
+class HoleTable
+{
+public:
+  constexpr HoleTable()
+    : HoleTable(std::make_index_sequence<256>())
+  {
+  }
+  const HoleCounts& operator[](unsigned char hole) const { return this->counts_[hole]; }
+
+private:
+  template <std::size_t... Holes>
+  constexpr explicit HoleTable(std::index_sequence<Holes...> /*holes*/)
+    : counts_{ HoleCounts(static_cast<unsigned char>(Holes))... }
+  {
+  }
+
+  std::array<HoleCounts, 256> counts_;
+};
+inline constexpr HoleTable kHoles;
+
+/// The byte of a hole.
+inline unsigned char holeOf(int oldCount, bool boundary)
+{
+  return static_cast<unsigned char>(oldCount | (boundary ? kOpenHole : 0));
+}
+
+/// Places in a polygon while ears are cut off.
+class EarCutPolygon
+{
+  using Neighbours = std::array<unsigned char, kMaximumPolygon>;
+
+  template <int Distance>
+  struct At
+  {
+    Neighbours places{};
+    constexpr At()
+    {
+      for (int i = 0; i < kMaximumPolygon; ++i)
+      {
+        this->places[i] = static_cast<unsigned char>(i + Distance);
+      }
+    }
+  };
+
+public:
+  explicit EarCutPolygon(int size)
+  {
+    static constexpr At<1> kNext;
+    static constexpr At<-1> kPrevious;
+    constexpr int kFew = 16; // most polygons: a copy of known size
+    std::memcpy(this->next_.data(), kNext.places.data(), kFew);
+    std::memcpy(this->previous_.data(), kPrevious.places.data(), kFew);
+    if (size > kFew)
+    {
+      this->next_ = kNext.places;
+      this->previous_ = kPrevious.places;
+    }
+    this->next_[size - 1] = 0;
+    this->previous_[0] = static_cast<unsigned char>(size - 1);
+  }
+
+  /// Visit(before, ear, behind), and the ear is gone.
+  template <typename Visit>
+  void cut(int ear, Visit&& visit)
+  {
+    const unsigned char before = this->previous_[ear];
+    const unsigned char behind = this->next_[ear];
+    visit(before, static_cast<unsigned char>(ear), behind);
+    this->next_[before] = behind;
+    this->previous_[behind] = before;
+  }
+
+private:
+  Neighbours next_;
+  Neighbours previous_;
+};
+
+/// Reads the code of a hole. It reads up to one byte behind the code.
+class HoleCode
+{
+public:
+  HoleCode(const HoleCounts& counts, const unsigned char* code)
+    : code_(code)
+    , places_(2 * counts.oldCount)
+    , placeBits_(counts.placeBits)
+    , newCount_(counts.newCount)
+  {
+  }
+
+  /// Corner of the node in an old triangle, or 3, which is none.
+  int corner(int oldTriangle) const
+  {
+    return this->code_[oldTriangle / 4] >> (2 * (oldTriangle % 4)) & 3;
+  }
+  int ear(int newTriangle) const { return this->place(newTriangle); }
+
+  /// If there are sources.
+  int source(int newTriangle) const { return this->place(this->newCount_ + newTriangle); }
+
+private:
+  int place(int i) const
+  {
+    const int begin = this->places_ + this->placeBits_ * i;
+    const unsigned char* bytes = this->code_ + begin / 8;
+    const unsigned bits = bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
+    return static_cast<int>(bits >> begin % 8 & ((1U << this->placeBits_) - 1));
+  }
+
+  const unsigned char* code_;
+  int places_; // the first bit of the ears
+  int placeBits_;
+  int newCount_;
+};
+
+/// Writes the parts of a code in their order: corners, ears, sources.
+class HoleCodeWriter
+{
+public:
+  explicit HoleCodeWriter(unsigned char* code)
+    : code_(code)
+  {
+  }
+
+  /// @param bits at most 8
+  void add(unsigned value, int bits)
+  {
+    this->word_ |= value << this->used_;
+    this->used_ += bits;
+    if (this->used_ >= 8)
+    {
+      *this->code_++ = static_cast<unsigned char>(this->word_);
+      this->word_ >>= 8;
+      this->used_ -= 8;
+    }
+  }
+
+  /// The last byte.
+  void finish()
+  {
+    if (this->used_ > 0)
+    {
+      *this->code_ = static_cast<unsigned char>(this->word_);
+    }
+  }
+
+private:
+  unsigned char* code_;
+  unsigned word_ = 0;
+  int used_ = 0;
+};
+
+} // namespace undecimate
+
+#endif
