@@ -28,7 +28,8 @@
 namespace undecimate
 {
 
-/// An allocator for std::vector. Costs at most a huge page more than std::allocator.
+/// An allocator for std::vector. Costs no memory beside the array, but up to a huge page of address
+/// space.
 /// @tparam Shift 0 to 3: arrays of different shifts begin at different places in a page
 template <typename T, int Shift>
 class LargeArrayAllocator
@@ -107,10 +108,9 @@ private:
 #ifdef __linux__
     if (isLarge(bytes))
     {
-      // Whole huge pages.
-      bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-      void* memory = std::aligned_alloc(kHugePage, bytes);
-      if (!memory)
+      // Not in whole huge pages: of the last one, only what is needed is to be there.
+      void* memory = nullptr;
+      if (posix_memalign(&memory, kHugePage, bytes) != 0)
       {
         throw std::bad_alloc();
       }

@@ -11,6 +11,7 @@
 #include "tri_quad_decimation.h"
 #include "undecimation.h"
 
+#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -24,9 +25,45 @@ namespace
 std::size_t liveBytes = 0;
 std::size_t peakBytes = 0;
 
+// Around a block of posix_memalign() there is address space that nobody touches: what was asked for
+// counts. Only large arrays come from there, of which there are few at a time.
+struct AlignedBlock
+{
+  void* memory = nullptr;
+  std::size_t size = 0;
+};
+AlignedBlock alignedBlocks[64];
+
+AlignedBlock* alignedBlock(void* memory)
+{
+  for (AlignedBlock& block : alignedBlocks)
+  {
+    if (block.memory == memory)
+    {
+      return &block;
+    }
+  }
+  return nullptr;
+}
+
+std::size_t sizeOf(void* memory)
+{
+  const AlignedBlock* block = memory ? alignedBlock(memory) : nullptr;
+  return block ? block->size : malloc_usable_size(memory); // 0 for null
+}
+
+void forget(void* memory)
+{
+  liveBytes -= sizeOf(memory);
+  if (AlignedBlock* block = memory ? alignedBlock(memory) : nullptr)
+  {
+    block->memory = nullptr;
+  }
+}
+
 void* counted(void* memory)
 {
-  liveBytes += malloc_usable_size(memory); // 0 for null
+  liveBytes += sizeOf(memory);
   peakBytes = liveBytes > peakBytes ? liveBytes : peakBytes;
   return memory;
 }
@@ -51,16 +88,28 @@ extern "C"
   }
   void* realloc(void* memory, std::size_t size)
   {
-    liveBytes -= malloc_usable_size(memory);
+    forget(memory);
     return counted(__libc_realloc(memory, size));
   }
   void* aligned_alloc(std::size_t alignment, std::size_t size)
   {
     return counted(__libc_memalign(alignment, size));
   }
+  int posix_memalign(void** memory, std::size_t alignment, std::size_t size)
+  {
+    *memory = __libc_memalign(alignment, size);
+    AlignedBlock* block = alignedBlock(nullptr);
+    if (!*memory || !block)
+    {
+      return ENOMEM;
+    }
+    *block = { *memory, size };
+    counted(*memory);
+    return 0;
+  }
   void free(void* memory)
   {
-    liveBytes -= malloc_usable_size(memory);
+    forget(memory);
     __libc_free(memory);
   }
 }
@@ -160,7 +209,7 @@ void measure(const Grid& grid, const char* name, Criterion criterion, Way way, d
   std::printf("%s%s, %.0f nodes to %d\n", name, ways[static_cast<int>(way)], nodes,
     result.record.baseNodeCount);
   check("decimation, largest, a node", static_cast<double>(peakBytes - before) / nodes, peakBound);
-  checkRecord(result.record, result.baseTriangles, sources ? 56 : 42, sources ? 33 : 25);
+  checkRecord(result.record, result.baseTriangles, sources ? 46 : 37, sources ? 33 : 25);
 }
 
 // Quads that move over time, without the positions, which are the caller's.
@@ -215,6 +264,11 @@ void measureOverTime(
 
 int main(int argc, char* argv[])
 {
+  if (argc == 1)
+  {
+    // So large that its arrays lie in huge pages.
+    measure(Grid(500), "Quadric", Criterion::Quadric, Way::Plain, 162);
+  }
   const Grid grid(argc > 1 ? std::atoi(argv[1]) : 200);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Plain, 160);
   measure(grid, "Quadric", Criterion::Quadric, Way::Plain, 170);
