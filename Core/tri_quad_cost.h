@@ -6,8 +6,8 @@
 ///
 /// See tri_quad_decimation.h for what the criteria measure. A collapse folds if a cell that changes
 /// would turn too far, become a needle, or, as a quad, get a corner that points inwards, at any of
-/// the time steps. The Quadrics refuse it. With Deviation a node that has no other way may go so,
-/// and half of the cell's longest edge counts as an error at these steps.
+/// the time steps. A node that has no other way may go so, and half of the cell's longest edge
+/// counts as an error at these steps.
 
 #ifndef UNDECIMATE_CORE_TRI_QUAD_COST_H
 #define UNDECIMATE_CORE_TRI_QUAD_COST_H
@@ -144,6 +144,7 @@ private:
   bool keepsCells(const TriQuadPatch& patch, unsigned char target) const;
   void measureFolds(const TriQuadPatch& patch, unsigned char target);
   void rankFolds(TriQuadPatch& patch);
+  void addQuadrics(const TriQuadPatch& patch, unsigned char target);
   double combine(const float* squares) const;
   double quadricError(const TriQuadPatch& patch, unsigned char target);
   void measure(const TriQuadPatch& patch, unsigned char target);

@@ -22,8 +22,9 @@
 ///   largest over all of these and all time steps. Before a node goes from whose cells several have
 ///   been removed, points of the new cells and edges are measured to the original cells, too, and
 ///   some neighbours are compared so. Which ones, and where a node goes before, say the quadrics.
-///   A node that could only go by folding a cell may do so where all else costs more: half of the
-///   cell's longest edge counts as an error then.
+///
+/// A node that could only go by folding a cell may do so where all else costs more: half of the
+/// cell's longest edge counts as an error then, with Quadrics weighted as the planes are.
 ///
 /// Sources: [W06] S. Wundrak, T. Henn, A. Stork: Dynamic Progressive Triangle-Quadrilateral Meshes,
 /// WSCG 2006. [GH97] M. Garland, P. S. Heckbert: Surface Simplification Using Quadric Error
