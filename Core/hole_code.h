@@ -29,7 +29,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 
 namespace undecimate
 {
@@ -49,6 +48,8 @@ struct HoleCounts
   unsigned char extra = 0;     ///< nodes in the patch: of a triangle that leaves nothing behind
   unsigned char placeBits = 0; ///< w
   unsigned char sizes[2] = {}; ///< bytes of the code without and with sources
+
+  constexpr HoleCounts() = default;
 
   /// @param hole the byte; all values are sound
   constexpr explicit HoleCounts(unsigned char hole)
@@ -82,19 +83,16 @@ class HoleTable
 {
 public:
   constexpr HoleTable()
-    : HoleTable(std::make_index_sequence<256>())
   {
+    for (int hole = 0; hole < 256; ++hole)
+    {
+      this->counts_[hole] = HoleCounts(static_cast<unsigned char>(hole));
+    }
   }
   const HoleCounts& operator[](unsigned char hole) const { return this->counts_[hole]; }
 
 private:
-  template <std::size_t... Holes>
-  constexpr explicit HoleTable(std::index_sequence<Holes...> /*holes*/)
-    : counts_{ HoleCounts(static_cast<unsigned char>(Holes))... }
-  {
-  }
-
-  std::array<HoleCounts, 256> counts_;
+  std::array<HoleCounts, 256> counts_{};
 };
 inline constexpr HoleTable kHoles;
 
