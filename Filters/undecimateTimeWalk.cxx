@@ -141,7 +141,7 @@ std::string TimeWalk::add(vtkPolyData* mesh, const std::string& name)
     if (!differences.empty())
     {
       return "The mesh is not the same at all time steps: at " + name + " it has " + differences +
-        ", as at " + this->firstName_ +
+        this->firstOther(mesh) + ", compared with " + this->firstName_ +
         ". Only time steps with the same points and cells can be decimated together. Choose a List "
         "of such steps, or keep removed elements in the mesh upstream.";
     }
@@ -169,6 +169,22 @@ std::string TimeWalk::add(vtkPolyData* mesh, const std::string& name)
   }
   ++this->added_;
   return problem.empty() || name.empty() ? problem : "At " + name + ": " + problem;
+}
+
+// Where the polygons of a mesh with as many begin to differ from the first one's.
+std::string TimeWalk::firstOther(vtkPolyData* mesh) const
+{
+  const FaceCells cells = readFaces(mesh->GetPolys(), mesh->GetNumberOfPoints(), kTriQuadCorners);
+  const auto size = static_cast<std::ptrdiff_t>(this->corners_.size());
+  if (static_cast<std::ptrdiff_t>(cells.corners.size()) != size)
+  {
+    return "";
+  }
+  const auto place =
+    std::mismatch(this->corners_.begin(), this->corners_.end(), cells.corners.begin()).first -
+    this->corners_.begin();
+  return place == size ? ""
+                       : " (the first is polygon " + std::to_string(place / kTriQuadCorners) + ")";
 }
 
 std::string TimeWalk::readMesh(vtkPolyData* mesh)

@@ -92,6 +92,7 @@ public:
   std::vector<int> lanes() const;
 
 private:
+  std::string firstOther(vtkPolyData* mesh) const;
   std::string readMesh(vtkPolyData* mesh);
   std::string readParts(vtkPolyData* mesh);
   std::string set(vtkPolyData* mesh, int lane);
