@@ -30,11 +30,14 @@ function (undecimate_compile_options target)
   endif ()
 endfunction ()
 
-# undecimate_test_options(<target>): the same for a test program. Whether addresses are aligned is asked of the
-# libraries; in the tests themselves it takes a third of the time to compile.
+# undecimate_test_options(<target>): the same for a test program. With the sanitizers it takes half the time to
+# compile: by the optimisation that is made for it, with the headers of GoogleTest compiled once, and whether addresses
+# are aligned is asked of the libraries only.
 function (undecimate_test_options target)
   undecimate_compile_options(${target} ${ARGN})
   if (UNDECIMATE_SANITIZE)
-    target_compile_options(${target} PRIVATE -fno-sanitize=alignment)
+    target_compile_options(${target} PRIVATE -Og -fno-sanitize=alignment)
+    target_precompile_headers(${target} PRIVATE
+      <gtest/gtest.h> <algorithm> <cmath> <functional> <random> <set> <string> <vector>)
   endif ()
 endfunction ()
