@@ -109,7 +109,7 @@ TEST(FiveNodes, DecimationRemovesTheCheapestNodeFirst)
   Monitor monitor;
   HashQueueDecimationResult result;
   ASSERT_TRUE(decimate(mesh.view(), options, monitor, result));
-  ASSERT_EQ(result.record.stepShapes.size(), 1U);
+  ASSERT_EQ(result.record.stepErrors.size(), 1U);
   EXPECT_EQ(result.record.nodeOrder.back(), 0);
   EXPECT_NEAR(result.error, 0.2, 1e-7);
   EXPECT_EQ(result.stopReason, StopReason::TargetTriangles);
@@ -140,7 +140,7 @@ TEST(MeanEdgeCriterion, ErrorsOfADecimationAreTheMeansOfTheLevels)
     Monitor monitor;
     HashQueueDecimationResult result;
     ASSERT_TRUE(decimate(mesh.view(), options, monitor, result));
-    ASSERT_GT(result.record.stepShapes.size(), 100U);
+    ASSERT_GT(result.record.stepErrors.size(), 100U);
 
     Undecimation cursor;
     ASSERT_TRUE(cursor.open(result.record.view(), result.baseTriangles.data()));

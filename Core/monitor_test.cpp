@@ -158,7 +158,7 @@ protected:
     EXPECT_EQ(result.record.nodeCount, 0);
     EXPECT_EQ(result.record.cellCount, 0);
     EXPECT_TRUE(result.record.nodeOrder.empty());
-    EXPECT_TRUE(result.record.stepShapes.empty());
+    EXPECT_TRUE(result.record.stepErrors.empty());
     EXPECT_TRUE(result.baseTriangles.empty());
   }
 
@@ -257,7 +257,7 @@ TEST_P(MonitoredDecimation, WorksAgainAfterReset)
   monitor.reset();
   ASSERT_TRUE(decimate(mesh.view(), options, monitor, result));
   EXPECT_EQ(monitor.progress(), 1.0);
-  EXPECT_GT(result.record.stepShapes.size(), 0U);
+  EXPECT_GT(result.record.stepErrors.size(), 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Criteria, MonitoredDecimation,
