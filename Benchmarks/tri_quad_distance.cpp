@@ -5,12 +5,13 @@
 // (or other points), by CGAL's AABB trees: for tri_quad.py.
 //
 //   tri_quad_distance SERIES STEPS CELLS [--points FILE] [--tolerance 0.0001]
+//                     [--relative 0.01]
 //
 // SERIES and CELLS: see tri_quad_cli.cpp; STEPS: 0,15,30 or "all". --points: float32 points of the
 // cells for each of the steps, step after step (for rivals that move nodes). Cells are cut into
-// triangles around their center. Each distance is at most the tolerance (a fraction of the
-// diagonal) too small. Prints "step forth back diagonal" for each step; forth: from the series to
-// the cells.
+// triangles around their center. Each distance is too small by at most the tolerance (a fraction of
+// the diagonal) or that fraction of the distance itself, whichever is larger. Prints "step forth
+// back diagonal" for each step; forth: from the series to the cells.
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -146,11 +147,13 @@ Piece bounded(const Place& a, const Place& b, const Place& c)
   return piece;
 }
 
-// The largest distance of a surface's points to the other one, at most `tolerance` too small: a
-// piece is cut into four as long as a point of it could be farther than the farthest one so far.
-double farthest(const Surface& from, const Tree& to, double tolerance)
+// The largest distance of a surface's points to the other one, too small by at most `tolerance` or
+// the fraction `relative` of it: a piece is cut into four as long as a point of it could be that
+// much farther than the farthest one so far.
+double farthest(const Surface& from, const Tree& to, double tolerance, double relative)
 {
   double most = 0.0;
+  const auto enough = [&] { return most + std::max(tolerance, relative * most); };
   const auto isNearer = [](const Piece& a, const Piece& b) { return a.most < b.most; };
   std::priority_queue<Piece, std::vector<Piece>, decltype(isNearer)> pieces(isNearer);
   std::vector<Place> places(from.points.size());
@@ -172,7 +175,7 @@ double farthest(const Surface& from, const Tree& to, double tolerance)
   const auto keep = [&](const Place& a, const Place& b, const Place& c)
   {
     Piece piece = bounded(a, b, c);
-    if (piece.most > most + tolerance)
+    if (piece.most > enough())
     {
       pieces.push(std::move(piece));
     }
@@ -181,7 +184,7 @@ double farthest(const Surface& from, const Tree& to, double tolerance)
   {
     keep(places[a], places[b], places[c]);
   }
-  while (!pieces.empty() && pieces.top().most > most + tolerance)
+  while (!pieces.empty() && pieces.top().most > enough())
   {
     const auto [a, b, c] = pieces.top().corners;
     pieces.pop();
@@ -212,12 +215,15 @@ int main(int argc, char** argv)
   }
   std::string moved;
   double tolerance = 1e-4;
+  double relative = 0.01;
   for (int i = 4; i + 1 < argc; i += 2)
   {
     if (std::string(argv[i]) == "--points")
       moved = argv[i + 1];
     else if (std::string(argv[i]) == "--tolerance")
       tolerance = std::atof(argv[i + 1]);
+    else if (std::string(argv[i]) == "--relative")
+      relative = std::atof(argv[i + 1]);
     else
       fail(std::string("unknown option ") + argv[i]);
   }
@@ -283,8 +289,9 @@ int main(int argc, char** argv)
     Surface coarse = triangulate(moved.empty() ? points : movedPoints, level);
     const Tree originalTree(original.triangles.begin(), original.triangles.end());
     const Tree coarseTree(coarse.triangles.begin(), coarse.triangles.end());
-    std::printf("%d %.9g %.9g %.9g\n", step, farthest(original, coarseTree, tolerance * diagonal),
-      farthest(coarse, originalTree, tolerance * diagonal), diagonal);
+    std::printf("%d %.9g %.9g %.9g\n", step,
+      farthest(original, coarseTree, tolerance * diagonal, relative),
+      farthest(coarse, originalTree, tolerance * diagonal, relative), diagonal);
     std::fflush(stdout);
   }
   return 0;
