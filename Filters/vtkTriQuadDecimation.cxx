@@ -388,7 +388,7 @@ bool vtkTriQuadDecimation::Decimate(vtkPolyData* mesh, bool pieces, bool withTim
   if (asked && result.stopReason == StopReason::NoRemovableNode)
   {
     vtkWarningMacro("Fewer nodes were removed than asked, for no further node can be removed "
-                    "without folding a cell or breaking the surface: "
+                    "without breaking the surface: "
       << record.baseNodeCount << " of " << record.nodeCount << " nodes are left."
       << describeKept(result));
   }
