@@ -25,7 +25,7 @@ namespace undecimate
 enum class IntervalSpacing
 {
   /// The leading bits of the value as a float are its interval (exponent and 7 bits of the
-  /// fraction): a fixed relative precision of 0.8 % over all magnitudes, no bounds needed.
+  /// fraction): a fixed relative precision of 0.8 % from 2^-64 to 2^32, no bounds needed.
   Logarithmic,
   /// [K03] eq. 1-3 on normalised values (divided by the largest one).
   Exponential
@@ -257,12 +257,13 @@ public:
 };
 
 /// Number of intervals of IntervalSpacing::Logarithmic.
-constexpr Index kLogarithmicIntervals = 256 << 7;
+constexpr Index kLogarithmicIntervals = 96 << 7;
 
-/// Interval of a value >= 0 with logarithmic spacing; negative values count as 0, NaN as the
-/// largest.
+/// Interval of a value >= 0 with logarithmic spacing. What is less than 2^-64 (negative, too) is in
+/// the first one; what is 2^32 or more, and NaN, in the last one.
 inline Index logarithmicInterval(float value)
 {
+  constexpr Index kFirst = (127 - 64) << 7; // leading bits of 2^-64
   if (value != value)
   {
     return kLogarithmicIntervals - 1;
@@ -273,7 +274,8 @@ inline Index logarithmicInterval(float value)
   }
   std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof(bits));
-  return static_cast<Index>(bits >> 16);
+  return std::clamp(
+    static_cast<Index>(bits >> 16) - kFirst, Index{ 0 }, Index{ kLogarithmicIntervals - 1 });
 }
 
 inline void IntervalBits::mark(Index interval)
