@@ -80,10 +80,10 @@ public:
   }
 
   /// Up to where a node may have risen and go all the same, where the order may be a rough one: a
-  /// factor of 1.09.
+  /// factor of 1.19.
   Index near(Index interval) const
   {
-    constexpr Index kNear = 16; // of 128 an octave
+    constexpr Index kNear = 32; // of 128 an octave
     return this->logarithmic_ ? std::min(interval + kNear, this->count() - 1) : interval;
   }
 

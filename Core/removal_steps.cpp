@@ -147,7 +147,7 @@ StepWriter::StepWriter(bool trackSources, bool keepPositions)
 
 unsigned char* StepWriter::allocate(std::size_t size)
 {
-  constexpr std::size_t kBlock = std::size_t{ 1 } << 14;
+  constexpr std::size_t kBlock = std::size_t{ 1 } << 12;
   static_assert((sizeof(Corner) + 2) * kMaximumPatchCells < kBlock, "");
   if (this->blocks_.empty() || this->used_ + size > kBlock)
   {
