@@ -352,7 +352,7 @@ Outcome checkOptions(const HashQueueDecimationOptions& options)
   return checkArrays(options);
 }
 
-Outcome checkMesh(const TriangleMeshView& mesh)
+Outcome checkMesh(const TriangleMeshView& mesh, Threads* threads)
 {
   constexpr std::int64_t kLimit = std::numeric_limits<Index>::max();
   if (mesh.nodeCount > kLimit || mesh.triangleCount > kLimit / 4)
@@ -373,15 +373,28 @@ Outcome checkMesh(const TriangleMeshView& mesh)
       "The mesh needs exactly one of its two triangle arrays and one of its two point arrays." };
   }
   const std::int64_t corners = 3 * mesh.triangleCount;
-  const std::int64_t bad = mesh.wideTriangles
-    ? findOutside(mesh.wideTriangles, corners, mesh.nodeCount)
-    : findOutside(mesh.triangles, corners, mesh.nodeCount);
+  std::int64_t bad = corners;
+  std::mutex mutex;
+  const auto check = [&](const auto* triangles)
+  {
+    doInShares(threads, static_cast<Index>(mesh.triangleCount),
+      [&](const Share& share)
+      {
+        const std::int64_t begin = std::int64_t{ 3 } * share.begin;
+        const std::int64_t count = std::int64_t{ 3 } * share.end - begin;
+        const std::int64_t place = findOutside(triangles + begin, count, mesh.nodeCount);
+        const std::lock_guard<std::mutex> lock(mutex);
+        bad = place < count ? std::min(bad, begin + place) : bad;
+      });
+  };
+  mesh.wideTriangles ? check(mesh.wideTriangles) : check(mesh.triangles);
   if (bad < corners)
   {
     return { Status::InvalidArgument,
       "Triangle " + std::to_string(bad / 3) + " refers to node " +
         std::to_string(mesh.wideTriangles ? mesh.wideTriangles[bad] : mesh.triangles[bad]) +
-        ", but there are " + std::to_string(mesh.nodeCount) + " nodes." };
+        ", but there are " + std::to_string(mesh.nodeCount) +
+        " nodes. Repair the cells of the input." };
   }
   return {};
 }
@@ -428,21 +441,17 @@ void flagKeptNodes(const TriangleMeshView& mesh, bool preserveBoundary, Triangle
     });
 }
 
+/// @param threads null: not parallel
 Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& options,
-  Monitor& monitor, HashQueueDecimationResult& result)
+  Threads* threads, Monitor& monitor, HashQueueDecimationResult& result)
 {
-  std::unique_ptr<Threads> threads;
-  if (options.parallel)
-  {
-    threads = std::make_unique<Threads>(options.threads);
-  }
-  TriangleTopology topology(mesh, threads.get());
-  flagKeptNodes(mesh, options.preserveBoundary, topology, threads.get(), result);
+  TriangleTopology topology(mesh, threads);
+  flagKeptNodes(mesh, options.preserveBoundary, topology, threads, result);
   const Goal goal(mesh, options);
   const auto decimateBy = [&](auto&& criterion)
   {
     using CriterionType = std::decay_t<decltype(criterion)>;
-    if (options.parallel)
+    if (threads)
     {
       return ParallelDecimation<CriterionType>(
         topology, criterion, options, goal, monitor, *threads)
@@ -454,10 +463,10 @@ Outcome run(const TriangleMeshView& mesh, const HashQueueDecimationOptions& opti
     options.criterion == Criterion::ScalarDifference ? &options.arrays.front() : nullptr;
   const Status status = options.criterion == Criterion::Deviation
     ? decimateBy(DeviationCriterion(
-        topology, options.arrays, { options.scalarWeight, options.shapeWeight }, threads.get()))
+        topology, options.arrays, { options.scalarWeight, options.shapeWeight }, threads))
     : options.criterion == Criterion::Quadric
-    ? decimateBy(QuadricCriterion(topology, threads.get()))
-    : decimateBy(MeanEdgeCriterion(topology, array, threads.get()));
+    ? decimateBy(QuadricCriterion(topology, threads))
+    : decimateBy(MeanEdgeCriterion(topology, array, threads));
   return { status, status == Status::Cancelled ? "Cancelled." : "" };
 }
 
@@ -489,11 +498,16 @@ Outcome decimate(const TriangleMeshView& mesh, const HashQueueDecimationOptions&
     [&]
     {
       Outcome outcome = checkOptions(options);
+      std::unique_ptr<Threads> threads;
+      if (outcome && options.parallel)
+      {
+        threads = std::make_unique<Threads>(options.threads);
+      }
       if (outcome)
       {
-        outcome = checkMesh(mesh);
+        outcome = checkMesh(mesh, threads.get());
       }
-      return outcome ? run(mesh, options, monitor, result) : outcome;
+      return outcome ? run(mesh, options, threads.get(), monitor, result) : outcome;
     });
 }
 

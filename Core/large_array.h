@@ -28,6 +28,11 @@
 namespace undecimate
 {
 
+/// Whether the elements of a new array are left as the memory is: the owner begins their lives, in
+/// shares of several threads. Elements without an initializer always are.
+template <typename T>
+inline constexpr bool kMadeByOwner = false;
+
 /// An allocator for std::vector. Costs no memory beside the array, but up to a huge page of address
 /// space.
 /// @tparam Shift 0 to 3: arrays of different shifts begin at different places in a page
@@ -53,7 +58,10 @@ public:
   template <typename Element>
   void construct(Element* element)
   {
-    ::new (static_cast<void*>(element)) Element;
+    if constexpr (!kMadeByOwner<Element>)
+    {
+      ::new (static_cast<void*>(element)) Element;
+    }
   }
 
   T* allocate(std::size_t count)

@@ -3,6 +3,8 @@
 
 #include "mesh_parts.h"
 
+#include "compiler.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -15,6 +17,7 @@ namespace
 
 constexpr Index kBlock = 1 << 14;        // nodes of a job before there are parts
 constexpr Index kMaximumParts = 1 << 12; // a table has an entry for each pair of old and new ones
+constexpr Index kAhead = 16;             // nodes, of a prefetch
 
 // Along each axis: bits of a node's place in the cube, and of the cube's place in the cells, which
 // span two cubes.
@@ -51,6 +54,7 @@ MeshParts::MeshParts(const TriangleTopology& topology, Threads& threads)
   , nodes_(topology.nodeCount())
   , spare_(topology.nodeCount())
   , places_(topology.nodeCount())
+  , cells_(topology.nodeCount())
   , partOf_(topology.nodeCount())
 {
   const Index nodeCount = topology.nodeCount();
@@ -128,7 +132,7 @@ void MeshParts::cut(int round, Index partNodes)
     return along(0) | along(1) | along(2);
   };
 
-  // Nodes of each cell.
+  // Nodes of each cell; the cell of each node stays for the next two passes.
   std::vector<std::atomic<Index>> counts(std::size_t{ 1 } << 3 * bits);
   for (std::atomic<Index>& count : counts)
   {
@@ -137,9 +141,12 @@ void MeshParts::cut(int round, Index partNodes)
   this->threads_.run(this->count(),
     [&](Index part, int /*thread*/)
     {
-      for (Index i = this->parts_[part].begin; i < this->parts_[part].end; ++i)
+      const Range& here = this->parts_[part];
+      for (Index i = here.begin; i < here.end; ++i)
       {
-        counts[cellOf(this->nodes_[i])].fetch_add(1, std::memory_order_relaxed);
+        prefetch(&this->places_[this->nodes_[std::min(i + kAhead, here.end - 1)]]);
+        this->cells_[i] = cellOf(this->nodes_[i]);
+        counts[this->cells_[i]].fetch_add(1, std::memory_order_relaxed);
       }
     });
 
@@ -163,8 +170,6 @@ void MeshParts::cut(int round, Index partNodes)
   const Index newCount = last + 1;
 
   // Where the nodes of each old part go in each new one.
-  const auto partOf = [&](Index node)
-  { return counts[cellOf(node)].load(std::memory_order_relaxed); };
   std::vector<Index> places(std::size_t{ 1 } * this->count() * newCount, 0);
   this->threads_.run(this->count(),
     [&](Index old, int /*thread*/)
@@ -172,7 +177,8 @@ void MeshParts::cut(int round, Index partNodes)
       Index* sizes = places.data() + std::size_t{ 1 } * old * newCount;
       for (Index i = this->parts_[old].begin; i < this->parts_[old].end; ++i)
       {
-        ++sizes[partOf(this->nodes_[i])];
+        this->cells_[i] = counts[this->cells_[i]].load(std::memory_order_relaxed);
+        ++sizes[this->cells_[i]];
       }
     });
   std::vector<Range> parts;
@@ -195,7 +201,7 @@ void MeshParts::cut(int round, Index partNodes)
       for (Index i = this->parts_[old].begin; i < this->parts_[old].end; ++i)
       {
         const Index node = this->nodes_[i];
-        const Index part = partOf(node);
+        const Index part = static_cast<Index>(this->cells_[i]);
         this->spare_[to[part]++] = node;
         this->partOf_[node] = static_cast<std::uint16_t>(part);
       }
@@ -209,6 +215,7 @@ void MeshParts::release()
   undecimate::release(this->nodes_);
   undecimate::release(this->spare_);
   undecimate::release(this->places_);
+  undecimate::release(this->cells_);
   undecimate::release(this->partOf_);
 }
 

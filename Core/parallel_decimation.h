@@ -175,6 +175,8 @@ private:
   // A round that does less than this fraction of its candidates any good is the last one.
   static constexpr Index kFewMoved = 64;
 
+  static constexpr int kAhead = 16; // nodes, of a prefetch
+
   // Share of the progress that the first evaluation gets.
   static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
 
@@ -396,8 +398,10 @@ private:
   {
     std::vector<Index>& nodes = worker.nodes;
     nodes.clear();
-    for (const Index* node = parts.begin(part); node != parts.end(part); ++node)
+    const Index* const end = parts.end(part);
+    for (const Index* node = parts.begin(part); node != end; ++node)
     {
+      prefetch(&this->places_[*std::min(node + kAhead, end - 1)]);
       const Index place = this->places_[*node];
       if (place >= 0 && place <= limit)
       {
@@ -407,10 +411,10 @@ private:
     const std::size_t count = nodes.size();
     for (std::size_t i = 0; i < count; ++i)
     {
-      constexpr std::size_t kAhead = 4; // stages of the prefetch
-      this->topology_.prefetchNode(nodes[std::min(i + 3 * kAhead, count - 1)]);
-      this->topology_.prefetchTriangle(nodes[std::min(i + 2 * kAhead, count - 1)]);
-      this->topology_.prefetchNeighbours(nodes[std::min(i + kAhead, count - 1)]);
+      constexpr std::size_t kStage = 4; // of the prefetch
+      this->topology_.prefetchNode(nodes[std::min(i + 3 * kStage, count - 1)]);
+      this->topology_.prefetchTriangle(nodes[std::min(i + 2 * kStage, count - 1)]);
+      this->topology_.prefetchNeighbours(nodes[std::min(i + kStage, count - 1)]);
       if (this->isFree(parts, part, nodes[i]))
       {
         worker.queue->insert(nodes[i], this->places_[nodes[i]]);
@@ -544,8 +548,10 @@ private:
   void count(MeshParts& parts, Index part, Worker& worker)
   {
     Index* left = parts.begin(part);
-    for (const Index* node = parts.begin(part); node != parts.end(part); ++node)
+    const Index* const end = parts.end(part);
+    for (const Index* node = parts.begin(part); node != end; ++node)
     {
+      prefetch(&this->places_[*std::min(node + kAhead, end - 1)]);
       const Index place = this->places_[*node];
       if (place != kGone)
       {

@@ -70,8 +70,7 @@ Quadric Quadric::seenFrom(const Vector& p) const
 QuadricCriterion::QuadricCriterion(TriangleTopology& topology, Threads* threads)
   : topology_(topology)
   , heightField_(topology, threads)
-  , memory_(std::make_shared<LargeArray<Stored, 2>>(
-      topology.nodeCount(), Stored{ 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F }))
+  , memory_(std::make_shared<LargeArray<Stored, 2>>(topology.nodeCount()))
   , stored_(this->memory_->data())
 {
   const double diagonal = diagonalOf(topology, threads);
@@ -105,6 +104,8 @@ void QuadricCriterion::store(Index node, const Quadric& q)
 template <typename Nodes>
 void QuadricCriterion::addPlanes(const Nodes& ours)
 {
+  std::fill(this->stored_ + ours.begin, this->stored_ + ours.end,
+    Stored{ 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F });
   // Weight over the square of the normal's length.
   const auto addPlane = [&](Index node, const Vector& normal, double factor)
   {

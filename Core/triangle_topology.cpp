@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <new>
 
 namespace undecimate
 {
@@ -34,6 +35,10 @@ TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, 
   : triangles_(triangleCount)
   , nodes_(nodeCount)
 {
+  for (MeshNode& node : this->nodes_)
+  {
+    ::new (static_cast<void*>(&node)) MeshNode;
+  }
   this->build(triangles, nullptr);
 }
 
@@ -41,8 +46,6 @@ TriangleTopology::TriangleTopology(const TriangleMeshView& mesh, Threads* thread
   : triangles_(mesh.triangleCount)
   , nodes_(mesh.nodeCount)
 {
-  mesh.wideTriangles ? this->build(mesh.wideTriangles, threads)
-                     : this->build(mesh.triangles, threads);
   const auto place = [&](const auto* coordinates)
   {
     doInBlocks(threads, this->nodeCount(), kBlock,
@@ -51,11 +54,13 @@ TriangleTopology::TriangleTopology(const TriangleMeshView& mesh, Threads* thread
         const auto* p = coordinates + std::size_t{ 3 } * begin;
         for (Index i = begin; i < end; ++i, p += 3)
         {
-          this->nodes_[i].position = { p[0], p[1], p[2] };
+          (::new (static_cast<void*>(&this->nodes_[i])) MeshNode)->position = { p[0], p[1], p[2] };
         }
       });
   };
   mesh.pointsDouble ? place(mesh.pointsDouble) : place(mesh.pointsFloat);
+  mesh.wideTriangles ? this->build(mesh.wideTriangles, threads)
+                     : this->build(mesh.triangles, threads);
 }
 
 template <typename Number>
@@ -118,7 +123,7 @@ void TriangleTopology::findRanges(Index begin, Index end)
 // there are edges of more than two or of misoriented triangles, which lie in several shares.
 bool TriangleTopology::connect(Threads& threads)
 {
-  LargeArray<Corner> first(this->nodes_.size(), kNoCorner);
+  LargeArray<Corner> first(this->nodes_.size());
   LargeArray<Corner, 2> next(std::size_t{ 3 } * this->triangles_.size());
   std::atomic<bool> good{ true };
   doInShares(&threads, this->nodeCount(),
@@ -137,6 +142,7 @@ bool TriangleTopology::connectShare(
 {
   const auto behind = [&next](Corner corner) -> Corner&
   { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
+  std::fill(first.begin() + ours.begin, first.begin() + ours.end, kNoCorner);
   bool good = true;
   const auto connectTriangle = [&](Index i)
   {

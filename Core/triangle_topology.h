@@ -99,6 +99,8 @@ struct alignas(64) MeshNode
   Corner corner = kNoCorner;    ///< topology: of one of its triangles
 };
 static_assert(sizeof(MeshNode) == 64, "a cache line");
+template <>
+inline constexpr bool kMadeByOwner<MeshNode> = true;
 
 /// The first cost of a node waits where its place in the queue will be: the node is in none yet.
 inline void setFirstCost(MeshNode& node, float cost)

@@ -3,7 +3,6 @@
 
 #include "undecimateArrays.h"
 
-#include "array_range.h"
 #include "fingerprint.h"
 #include "undecimateMemory.h"
 
@@ -592,7 +591,7 @@ FaceCells readFaces(vtkCellArray* cells, vtkIdType pointCount, int cornersPerCel
   return result;
 }
 
-TriangleCorners trianglesInPlace(vtkCellArray* cells, vtkIdType pointCount)
+TriangleCorners trianglesInPlace(vtkCellArray* cells)
 {
   TriangleCorners corners;
   const vtkIdType count = cells->GetNumberOfCells();
@@ -608,8 +607,7 @@ TriangleCorners trianglesInPlace(vtkCellArray* cells, vtkIdType pointCount)
       {
         others += offsets[cell] != 3 * cell ? 1 : 0;
       }
-      if (others > 0 || size < 3 * count ||
-        findOutside(connectivity, 3 * count, pointCount) < 3 * count)
+      if (others > 0 || size < 3 * count)
       {
         return;
       }

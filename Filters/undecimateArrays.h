@@ -91,9 +91,9 @@ struct TriangleCorners
   const std::int64_t* wide = nullptr;
 };
 
-/// The corners of the cells, or nothing if there are none, if other cells than triangles are among
-/// them, or if one has a point outside [0, pointCount): readFaces() says more then.
-TriangleCorners trianglesInPlace(vtkCellArray* cells, vtkIdType pointCount);
+/// The corners of the cells, unchecked, or nothing if there are none, or if other cells than
+/// triangles are among them: readFaces() says more then.
+TriangleCorners trianglesInPlace(vtkCellArray* cells);
 
 /// A cell array of triangles, or of triangles and quads.
 /// @param corners cornersPerCell * count point numbers; of four, kNone at the last of triangles

@@ -236,7 +236,7 @@ std::string MeshInput::read(vtkPolyData* mesh)
       " points and corners fit in one piece. Divide the mesh.";
   }
   this->readPoints(mesh);
-  const TriangleCorners corners = trianglesInPlace(mesh->GetPolys(), points);
+  const TriangleCorners corners = trianglesInPlace(mesh->GetPolys());
   this->view_.triangles = corners.narrow;
   this->view_.wideTriangles = corners.wide;
   if (!corners.narrow && !corners.wide)
