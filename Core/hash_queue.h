@@ -25,7 +25,7 @@ namespace undecimate
 enum class IntervalSpacing
 {
   /// The leading bits of the value as a float are its interval (exponent and 7 bits of the
-  /// fraction): a fixed relative precision of 0.8 % from 2^-56 to 2^16, no bounds needed.
+  /// fraction): a fixed relative precision of 0.8 % from 2^-48 to 2^16, no bounds needed.
   Logarithmic,
   /// [K03] eq. 1-3 on normalised values (divided by the largest one).
   Exponential
@@ -257,13 +257,14 @@ public:
 };
 
 /// Number of intervals of IntervalSpacing::Logarithmic.
-constexpr Index kLogarithmicIntervals = 72 << 7;
+constexpr Index kLogarithmicIntervals = 64 << 7;
 
-/// Interval of a value >= 0 with logarithmic spacing. What is less than 2^-56 (negative, too) is in
-/// the first one; what is 2^16 or more, and NaN, in the last one.
+/// Interval of a value >= 0 with logarithmic spacing. What is less than 2^-48 (negative, too),
+/// which for a fraction of a length is rounding, is in the first one; what is 2^16 or more, and
+/// NaN, in the last one.
 inline Index logarithmicInterval(float value)
 {
-  constexpr Index kFirst = (127 - 56) << 7; // leading bits of 2^-56
+  constexpr Index kFirst = (127 - 48) << 7; // leading bits of 2^-48
   if (value != value)
   {
     return kLogarithmicIntervals - 1;

@@ -127,7 +127,7 @@ public:
   ///@{
   /**
    * Bounds of the queue's intervals. LOGARITHMIC: each is 0.8 % wider than the one before, for
-   * errors from 2^-56 to 2^16. EXPONENTIAL: equations 2 and 3 of the paper. Default is LOGARITHMIC.
+   * errors from 2^-48 to 2^16. EXPONENTIAL: equations 2 and 3 of the paper. Default is LOGARITHMIC.
    */
   vtkSetClampMacro(IntervalSpacing, int, LOGARITHMIC, EXPONENTIAL);
   vtkGetMacro(IntervalSpacing, int);
