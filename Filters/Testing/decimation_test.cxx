@@ -661,12 +661,12 @@ TEST(Decimation, RefusesCellsWithPointsThatDoNotExist)
 {
   Decimation filter;
   expectError(filter, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2 }, { 0, 1, 7 } }),
-    { "Face 1", "point 7", "3 points" });
+    { "Triangle 1", "node 7", "3 nodes" });
   Decimation negative;
-  expectError(
-    negative, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, -1, 2 } }), { "Face 0", "point -1" });
+  expectError(negative, makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, -1, 2 } }),
+    { "Triangle 0", "node -1" });
   Decimation pointless;
-  expectError(pointless, makeMesh({}, { { 0, 1, 2 } }), { "Face 0", "0 points" });
+  expectError(pointless, makeMesh({}, { { 0, 1, 2 } }), { "Triangle 0", "0 nodes" });
   Decimation line;
   vtkSmartPointer<vtkPolyData> mesh = makeMesh({ 0, 0, 0, 1, 0, 0, 0, 1, 0 }, { { 0, 1, 2 } });
   const vtkIdType ids[] = { 0, 3 };
