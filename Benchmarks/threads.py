@@ -3,7 +3,8 @@
 """Parallel: the whole filter with one thread and with several, on a million nodes to 1 % of the triangles.
 
 Wall time of Update(), in turns, a process a run, and the error of the record beside that of the serial algorithm. Only
-worth something on a machine that does nothing else.
+worth something on a machine that does nothing else: what others take of it only ever makes a run slower, and hits one with
+two threads twice as often, so the fastest run of each kind is shown beside the median.
 """
 import argparse
 import json
@@ -64,7 +65,7 @@ def main():
     args = a.parse_args()
     out = []
     print(f"| mesh | criterion | serial, s | 1 thread, s | {args.threads} threads, s | 1 / {args.threads}, median | least .. "
-          "largest | target | error / serial | target |\n|---|---|--:|--:|--:|--:|--:|---|--:|---|")
+          "largest | fastest / fastest | target | error / serial | target |\n|---|---|--:|--:|--:|--:|--:|--:|---|--:|---|")
     for name in args.meshes:
         _, triangles, _, _, mesh = prepare(*name.split(":"))
         wanted = wanted_count(len(triangles), PERCENT)
@@ -82,7 +83,8 @@ def main():
             out.append({"mesh": name, "criterion": criterion, "threads": args.threads, "ratio": middle, "near": near,
                         "rows": rows})
             print(f"| {name} | {criterion} | " + " | ".join(f"{np.median(w):.2f}" for w in wall.values()) +
-                  f" | {middle:.2f} | {ratio.min():.2f} .. {ratio.max():.2f} | >= {GOAL:g} "
+                  f" | {middle:.2f} | {ratio.min():.2f} .. {ratio.max():.2f} | "
+                  f"{wall[1].min() / wall[args.threads].min():.2f} | >= {GOAL:g} "
                   f"{'met' if middle >= GOAL else '**missed**'} | {near:.3f} | <= {NEAR:g} "
                   f"{'met' if near <= NEAR else '**missed**'} |", flush=True)
     if args.json:
