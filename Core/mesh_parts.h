@@ -77,8 +77,7 @@ private:
   LargeArray<Index> nodes_;
   LargeArray<Index> spare_;
   LargeArray<std::uint32_t> places_; // in the bounding cube
-  LargeArray<std::uint32_t>
-    cells_; // while it cuts: of the node at this place in nodes_; later its part
+  LargeArray<std::uint32_t> cells_;  // or parts, in the order of nodes_, while it cuts
   std::vector<std::uint16_t> partOf_;
 };
 

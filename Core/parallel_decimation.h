@@ -26,6 +26,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -175,7 +176,7 @@ private:
   // A round that does less than this fraction of its candidates any good is the last one.
   static constexpr Index kFewMoved = 64;
 
-  static constexpr int kAhead = 16; // nodes, of a prefetch
+  static constexpr std::ptrdiff_t kAhead = 16; // nodes, of a prefetch
 
   // Share of the progress that the first evaluation gets.
   static constexpr double kEvaluationShare = CriterionType::kLazy ? 0.2 : 0.05;
@@ -401,7 +402,7 @@ private:
     const Index* const end = parts.end(part);
     for (const Index* node = parts.begin(part); node != end; ++node)
     {
-      prefetch(&this->places_[*std::min(node + kAhead, end - 1)]);
+      prefetch(&this->places_[node[std::min(kAhead, end - node - 1)]]);
       const Index place = this->places_[*node];
       if (place >= 0 && place <= limit)
       {
@@ -551,7 +552,7 @@ private:
     const Index* const end = parts.end(part);
     for (const Index* node = parts.begin(part); node != end; ++node)
     {
-      prefetch(&this->places_[*std::min(node + kAhead, end - 1)]);
+      prefetch(&this->places_[node[std::min(kAhead, end - node - 1)]]);
       const Index place = this->places_[*node];
       if (place != kGone)
       {
