@@ -24,11 +24,13 @@
 /// nearest distances.
 ///
 /// Refused are new triangles that turn away from the old ones on their ring edges, needles more
-/// strictly than others; that turn away from the original normals at all three corners; and that
-/// lie on a neighbour.
+/// strictly than others (if no others fill the hole, they may turn by up to 120 degrees); that turn
+/// away from the original normals at all three corners; that lie on a neighbour; and that face away
+/// from the original surface below them.
 ///
 /// Cost and error are two things: the queue goes by the error times the 16th root of the hole's
-/// area, that of arrays times the area itself, for the sake of the mean error (deviation.md); a
+/// area, that of arrays times the area itself, for the sake of the mean error (deviation.md), which
+/// counts more at last, when few triangles are left; a
 /// shape weight makes holes that leave bad triangles wait.
 ///
 /// Samples are relative to the removed node and in single precision, and so is the choice among

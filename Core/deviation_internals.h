@@ -190,6 +190,7 @@ struct DeviationCriterion::Internals
   std::array<Vector, kMaximumPatchCells> oldNormals;
   Vector normal;
   double radius = 0.0;
+  bool few = false;                 // triangles are left, and there are no arrays
   double costFactor = 1.0;          // of the error, for the queue
   double arrayFactor = 1.0;         // of the arrays' errors, besides
   Rows samples;                     // the node, then the nodes removed before
@@ -199,6 +200,7 @@ struct DeviationCriterion::Internals
   std::vector<std::uint64_t> marks; // a bit a node: of the hole, see betweenSquare()
   bool untouched = false;           // all triangles of the hole are original ones
   bool anyForbidden = false;        // edges, see below
+  Turn turn = Turn::Small;          // that triangles may make
   std::vector<float> values;        // of the arrays: a row of samples for each component
   PointRows sampleRows;
   double fixedSquare = 0.0; // what every triangulation costs: the new boundary edge
@@ -258,6 +260,7 @@ struct DeviationCriterion::Internals
     double score = HUGE_VAL;
     double shape = 0.0; // of the worst triangle
     Squares squares;
+    double meanSquare = 0.0; // of the samples' distances, where there are few triangles
     HoleTriangulation filling;
   };
   Best best;
@@ -315,6 +318,7 @@ struct DeviationCriterion::Internals
   double shapeTerm(double shape) const { return this->shapeWeight * this->radius * (1.0 - shape); }
   void compareAll(const Hole& hole);
   void compareSome(const Hole& hole);
+  bool findBestWithin(const Hole& hole);
   bool findBest(const Hole& hole);
   bool findAllowed(const Hole& hole);
   bool forbidExisting(const Hole& hole);

@@ -36,7 +36,7 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
     if (ringEdge)
     {
       onRing = true;
-      if (!triangle.follows(this->oldNormals[from]))
+      if (!triangle.follows(this->oldNormals[from], this->turn))
       {
         return candidate;
       }
@@ -46,7 +46,7 @@ DeviationCriterion::Internals::Candidate DeviationCriterion::Internals::judge(
       return candidate;
     }
   }
-  candidate.valid = onRing || triangle.follows(this->normal);
+  candidate.valid = onRing || triangle.follows(this->normal, this->turn);
   candidate.shape = triangle.shape();
   return candidate;
 }
@@ -56,7 +56,7 @@ void DeviationCriterion::Internals::judgeAll(const Hole& hole)
 {
   HoleCandidates& all = this->candidates;
   all.place(this->ring.data(), hole.size, hole.boundary);
-  all.judge(this->ringNormals.data(), this->normal, this->heightField);
+  all.judge(this->ringNormals.data(), this->normal, this->heightField, this->turn);
   if (!this->useArrays)
   {
     all.findCrossings(this->normal);

@@ -8,6 +8,9 @@
 /// no ring edge, from the mean normal of the hole. Needles may turn less: one that stands across
 /// the surface is a fold, however near it is. And a height field stays one: if all triangles of the
 /// input face the same way along an axis, so do all new ones.
+///
+/// On a coarse mesh of a round part old triangles meet at such angles that most nodes could not go
+/// by that. Who compares triangles with the original surface besides may allow wide turns.
 
 #ifndef UNDECIMATE_CORE_FOLD_RULE_H
 #define UNDECIMATE_CORE_FOLD_RULE_H
@@ -24,6 +27,13 @@
 namespace undecimate
 {
 
+/// How far a triangle may turn away from the old ones.
+enum class Turn
+{
+  Small, ///< the rule above
+  Wide,  ///< up to 120 degrees, needles too: says nothing of folds
+};
+
 /// A triangle of three nodes of a hole's ring, in the order of the ring.
 class FilledTriangle
 {
@@ -33,6 +43,9 @@ public:
   static constexpr double kMinimumCosine = 0.15;
   static constexpr double kNeedleCosine = 0.9;
   static constexpr double kNeedleShape = 0.1;
+
+  /// Cosine of the largest wide turn.
+  static constexpr double kWideCosine = -0.5;
 
   /// Below this shape a triangle counts as degenerate.
   static constexpr double kMinimumShape = 1e-4;
@@ -58,18 +71,18 @@ public:
   /// Unit normal, unless degenerate.
   Vector normal() const { return (1.0 / std::sqrt(this->square_)) * this->cross_; }
 
-  /// Whether the normal's cosine with a direction of any length is larger than a number >= 0.
+  /// Whether the normal's cosine with a direction of any length is larger than a number.
   bool faces(const Vector& direction, double cosine) const
   {
     const double product = dot(this->cross_, direction);
-    return product > 0.0 &&
-      product * product > cosine * cosine * this->square_ * dot(direction, direction);
+    return product * std::abs(product) >
+      cosine * std::abs(cosine) * this->square_ * dot(direction, direction);
   }
 
   /// Whether the triangle, not degenerate, may be beside one with such a normal (of any length).
-  bool follows(const Vector& oldNormal) const
+  bool follows(const Vector& oldNormal, Turn turn = Turn::Small) const
   {
-    return this->faces(oldNormal, this->minimumCosine_);
+    return this->faces(oldNormal, turn == Turn::Small ? this->minimumCosine_ : kWideCosine);
   }
 
   /// Whether the normal points away from a direction of any length.

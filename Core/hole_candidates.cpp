@@ -52,6 +52,11 @@ UNDECIMATE_INLINE float larger(float a, float b)
   return a > b ? a : b;
 }
 
+UNDECIMATE_INLINE float smaller(float a, float b)
+{
+  return a < b ? a : b;
+}
+
 // What FilledTriangle::follows() asks for.
 UNDECIMATE_INLINE float minimumCosine(float shape)
 {
@@ -93,7 +98,7 @@ struct HoleKernels
   static void spread(HoleCandidates& h, const Vector& normal);
   static void findOldNormals(HoleCandidates& h);
   static bool isSmooth(const HoleCandidates& h, const Vector& normal);
-  static void judge(HoleCandidates& h, const HeightFieldDirection& heightField);
+  static void judge(HoleCandidates& h, const HeightFieldDirection& heightField, float widest);
   static void refuseOpposing(HoleCandidates& h);
   static void findCrossings(HoleCandidates& h, const Vector& normal);
   static void findLines(HoleCandidates& h, const Vector& axisX, const Vector& axisY);
@@ -209,8 +214,9 @@ void HoleKernels::spread(HoleCandidates& h, const Vector& normal)
   }
 }
 
+// @param widest cosine that is enough for any triangle
 UNDECIMATE_VECTOR_CLONES
-void HoleKernels::judge(HoleCandidates& h, const HeightFieldDirection& heightField)
+void HoleKernels::judge(HoleCandidates& h, const HeightFieldDirection& heightField, float widest)
 {
   constexpr float kFlat = static_cast<float>(FilledTriangle::kMinimumShape);
   const float axisX = static_cast<float>(heightField.direction().x);
@@ -248,7 +254,7 @@ void HoleKernels::judge(HoleCandidates& h, const HeightFieldDirection& heightFie
       const float nX = inverse * x;
       const float nY = inverse * y;
       const float nZ = inverse * z;
-      const float cosine = minimumCosine(shape);
+      const float cosine = smaller(widest, minimumCosine(shape));
       const float first =
         nX * h.directions_[0][0][t] + nY * h.directions_[0][1][t] + nZ * h.directions_[0][2][t];
       const float second =
@@ -269,7 +275,7 @@ void HoleKernels::judge(HoleCandidates& h, const HeightFieldDirection& heightFie
   {
     const float third = h.normalX_[0] * h.oldNormals_[0][2] + h.normalY_[0] * h.oldNormals_[1][2] +
       h.normalZ_[0] * h.oldNormals_[2][2];
-    h.blocked_[0] = third > minimumCosine(h.shape_[0]) ? h.blocked_[0] : HUGE_VALF;
+    h.blocked_[0] = third > smaller(widest, minimumCosine(h.shape_[0])) ? h.blocked_[0] : HUGE_VALF;
   }
 }
 
@@ -595,8 +601,8 @@ void HoleCandidates::place(const Vector* ring, int size, bool boundary)
   HoleKernels::findOldNormals(*this);
 }
 
-void HoleCandidates::judge(
-  const Vector* ringNormals, const Vector& normal, const HeightFieldDirection& heightField)
+void HoleCandidates::judge(const Vector* ringNormals, const Vector& normal,
+  const HeightFieldDirection& heightField, Turn turn)
 {
   for (int i = 0; i < this->size_; ++i)
   {
@@ -605,7 +611,8 @@ void HoleCandidates::judge(
     this->originals_[2][i] = static_cast<float>(ringNormals[i].z);
   }
   HoleKernels::spread(*this, normal);
-  HoleKernels::judge(*this, heightField);
+  HoleKernels::judge(*this, heightField,
+    turn == Turn::Small ? 1.0F : static_cast<float>(FilledTriangle::kWideCosine));
   if (!HoleKernels::isSmooth(*this, normal))
   {
     HoleKernels::refuseOpposing(*this);

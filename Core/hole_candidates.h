@@ -62,8 +62,9 @@ public:
   /// hole's old triangles are those of its ring edges and the removed node.
   /// @param ringNormals of the original surface, any length
   /// @param normal of the hole, a unit vector
-  void judge(
-    const Vector* ringNormals, const Vector& normal, const HeightFieldDirection& heightField);
+  /// @param turn how far the triangles may turn away from the old ones
+  void judge(const Vector* ringNormals, const Vector& normal,
+    const HeightFieldDirection& heightField, Turn turn = Turn::Small);
 
   /// Rule a triangle of sorted corners out, or all triangles with an edge i < j.
   void refuse(const Triple& t) { this->blocked_[tripleNumber(t)] = HUGE_VALF; }

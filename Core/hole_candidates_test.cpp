@@ -56,15 +56,16 @@ struct TestHole
     return j == i + 1 || (!this->boundary && i == 0 && j == this->size() - 1);
   }
 
-  void begin(HoleCandidates& candidates, const HeightFieldDirection& heightField) const
+  void begin(HoleCandidates& candidates, const HeightFieldDirection& heightField,
+    Turn turn = Turn::Small) const
   {
     candidates.place(this->ring.data(), this->size(), this->boundary);
-    candidates.judge(this->ringNormals.data(), this->normal, heightField);
+    candidates.judge(this->ringNormals.data(), this->normal, heightField, turn);
     candidates.findCrossings(this->normal);
   }
 
   /// One triangle by itself.
-  bool isAllowed(const Triple& t, const HeightFieldDirection& heightField) const
+  bool isAllowed(const Triple& t, const HeightFieldDirection& heightField, Turn turn) const
   {
     const FilledTriangle triangle(this->ring[t[0]], this->ring[t[1]], this->ring[t[2]]);
     bool allowed = !triangle.degenerate() && heightField.allows(triangle) &&
@@ -77,10 +78,10 @@ struct TestHole
       if (this->isRingEdge(i, j))
       {
         onRing = true;
-        allowed = allowed && triangle.follows(this->oldNormals[edge]);
+        allowed = allowed && triangle.follows(this->oldNormals[edge], turn);
       }
     }
-    return allowed && (onRing || triangle.follows(this->normal));
+    return allowed && (onRing || triangle.follows(this->normal, turn));
   }
 
   /// Of one edge by itself: the lines of it and of each old edge that it crosses.
@@ -169,16 +170,20 @@ TEST_F(HoleCandidatesTest, JudgesTrianglesAsOneByOne)
   ASSERT_FALSE(noField.known());
   int allowed = 0;
   int refused = 0;
-  for (const HeightFieldDirection* direction : { &noField, &field })
+  using Case = std::pair<const HeightFieldDirection*, Turn>;
+  for (const auto& [direction, turn] : { Case{ &noField, Turn::Small }, { &field, Turn::Small },
+         { &noField, Turn::Wide }, { &field, Turn::Wide } })
   {
+    const HeightFieldDirection& known = *direction;
+    const Turn widest = turn;
     forHoles(kMaximumCompared,
       [&](const TestHole& hole)
       {
-        hole.begin(*candidates, *direction);
+        hole.begin(*candidates, known, widest);
         forTriples(hole.size(),
           [&](const Triple& t)
           {
-            const bool expected = hole.isAllowed(t, *direction);
+            const bool expected = hole.isAllowed(t, known, widest);
             ++(expected ? allowed : refused);
             ASSERT_EQ(candidates->isAllowed(t), expected) << +t[0] << " " << +t[1] << " " << +t[2];
             const FilledTriangle one(hole.ring[t[0]], hole.ring[t[1]], hole.ring[t[2]]);
