@@ -30,7 +30,7 @@ constexpr double kFewTriangles = 3000.0;
 
 // And from here on, without arrays, more counts for the mean: another power of the area, and a
 // power of the samples' root mean square distance as a fraction of the largest one (or of this,
-// where it is less). A tenth off the root mean square of the last levels, and none on the largest
+// where it is less). 3 % off the root mean square of the last levels, and 1 % on the largest
 // deviation (means of 48 cases).
 constexpr double kLastDistancePower = 0.09;
 constexpr double kMeanPower = 0.15;
