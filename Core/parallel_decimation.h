@@ -81,7 +81,7 @@ public:
       bool alone = stuck || candidates < kFewNodes;
       if (!alone)
       {
-        parts.cut(round, std::clamp(this->nodesLeft_ / kWantedParts, kSmallestPart, kLargestPart));
+        parts.cut(round, partSize(this->nodesLeft_));
         alone = parts.count() == 1;
       }
       if (alone)
@@ -156,10 +156,12 @@ private:
   static constexpr Index kGone = kNone - 1;
 
   // Nodes of a part: so many that the seams are short and so few that a part stays in a core's
-  // cache; but parts for many cores as long as they are not tiny.
+  // cache; but parts for many cores, and some for few cores even if they are small.
   static constexpr Index kLargestPart = 1 << 14;
+  static constexpr Index kSmallPart = 3 << 10;
   static constexpr Index kSmallestPart = 1 << 10;
   static constexpr Index kWantedParts = 64;
+  static constexpr Index kFewParts = 3;
 
   // So few candidates are left to the serial algorithm.
   static constexpr Index kFewNodes = 1 << 11;
@@ -220,6 +222,12 @@ private:
 
     Index left() const { return static_cast<Index>(this->steps.size() - this->taken); }
   };
+
+  static Index partSize(Index nodes)
+  {
+    const Index least = std::clamp(nodes / kFewParts, kSmallestPart, kSmallPart);
+    return std::clamp(nodes / kWantedParts, least, kLargestPart);
+  }
 
   bool isAtGoal(StopReason& reason) const
   {
@@ -440,6 +448,9 @@ private:
     const Append& append)
   {
     Queue& queue = *worker.queue;
+    // As the serial algorithm, far from the goal.
+    const bool isFar = this->goal_.isFar(this->trianglesLeft_);
+    const Index highest = isFar ? this->intervals_->near(limit) : limit;
     Index raised = 0;
     for (std::uint64_t turn = 0; goOn(turn); ++turn)
     {
@@ -451,8 +462,8 @@ private:
       }
       Index& place = this->places_[node];
       place = kNone;
-      const Verdict verdict = tryRemoval(node, interval, limit, this->goal_.error,
-        *this->intervals_, worker.criterion, queue, worker.removal);
+      const Verdict verdict = tryRemoval(node, isFar ? this->intervals_->near(interval) : interval,
+        highest, this->goal_.error, *this->intervals_, worker.criterion, queue, worker.removal);
       if (verdict != Verdict::Remove)
       {
         if (verdict == Verdict::AboveLimit)
@@ -474,7 +485,7 @@ private:
       worker.writer.write(
         this->topology_, hole, filling, errorInUnit(this->options_, worker.removal.error));
       place = kGone;
-      this->reevaluate(parts, part, worker, interval, limit);
+      this->reevaluate(parts, part, worker, interval, limit, isFar);
     }
     for (;;)
     {
@@ -488,7 +499,8 @@ private:
     }
   }
 
-  void reevaluate(const MeshParts& parts, Index part, Worker& worker, Index interval, Index limit)
+  void reevaluate(
+    const MeshParts& parts, Index part, Worker& worker, Index interval, Index limit, bool isFar)
   {
     Queue& queue = *worker.queue;
     const Hole& hole = worker.removal.hole;
@@ -505,7 +517,7 @@ private:
       bool isExpected = false;
       if constexpr (kIsQuadric)
       {
-        isExpected = worker.criterion.expect(node, hole, false, expected);
+        isExpected = worker.criterion.expect(node, hole, isFar, expected);
         if (!isExpected && queued)
         {
           continue;
@@ -518,8 +530,9 @@ private:
       else if (worker.criterion.isLazy())
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
-        place = queued ? queue.interval(node) : place == kNone ? interval : place;
-        if (queued && this->goal_.isFar(this->trianglesLeft_))
+        const bool waits = !queued && place == kNone;
+        place = queued ? queue.interval(node) : waits ? interval : place;
+        if (isFar && !waits)
         {
           place = std::max(place, this->intervals_->risen(interval));
         }
