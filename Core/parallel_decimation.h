@@ -169,8 +169,8 @@ private:
   // Share of the candidates that a round takes on: the cheapest. The less, the nearer the order is
   // to the serial one, and the more often the mesh is cut. A part removes at most kPartShare of its
   // own, since the seams stay behind.
-  static constexpr double kRoundShare = CriterionType::kLazy ? 0.25 : 0.5;
-  static constexpr double kPartShare = 0.5;
+  static constexpr double kRoundShare = kIsQuadric ? 0.35 : CriterionType::kLazy ? 0.25 : 0.5;
+  static constexpr double kPartShare = 0.7;
 
   // The last round aims at so many times the removals that are needed.
   static constexpr double kOvershoot = 1.1;
