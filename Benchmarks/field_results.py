@@ -67,6 +67,11 @@ def keeps_nodes(tool):
     return RIVALS[tool]().keeps_nodes
 
 
+def keeps_topology(row):
+    """Whether a result has no other non-manifold edges than the original, and as many handles and holes."""
+    return row["nonmanifold"] == 0 and row["euler"] == 0
+
+
 class Comparison:
     """`cases`: [(key, our row, {rival: row})]. A rival that misses the wanted count by over 2 % is `left_out` of
     the case; a case in which ours stops early, so that there are no equal counts, is `early`."""
@@ -84,11 +89,11 @@ class Comparison:
             self.cases.append((key, mine, {n: r for n, r in others.items() if not missed(r)}))
         self.rivals = sorted({n for _, _, rows in self.cases for n in rows})
 
-    def against(self, side, pick=lambda tool: True):
-        """[(ratio, key, our row, rival's row)], against the best of the picked rivals in each case."""
+    def against(self, side, pick=lambda tool: True, fits=lambda row: True):
+        """[(ratio, key, our row, rival's row)], against the best of the picked rivals, and of their fitting rows, in each case."""
         out = []
         for key, mine, rows in self.cases:
-            some = [r for n, r in rows.items() if pick(n) and r[side] is not None]
+            some = [r for n, r in rows.items() if pick(n) and r[side] is not None and fits(r)]
             if some:
                 best = min(some, key=lambda r: r[side])
                 out.append((ratio(mine[side], best[side], side), key, mine, best))
@@ -149,6 +154,10 @@ def print_shares(c):
           f"1.1 x the best that keeps nodes: {share(keeps, 1.1)}.")
     print(f"RMS at most 1.0 x the best that keeps nodes: {share(c.against('rms', keeps_nodes), 1.0005)}; "
           f"1.3 x the best of all: {share(c.against('rms'), 1.3)}.")
+    for label, pick in (("any", lambda n: True), ("those that keep nodes", keeps_nodes)):
+        same, rms = (c.against(side, pick, keeps_topology) for side in ("hausdorff", "rms"))
+        print(f"Of {label}, where the result has the topology of the original: Hausdorff {mean(same):.3f}, worst "
+              f"{worst(same)[0][0]:.2f} ({place(worst(same)[0][1])}); RMS worst {worst(rms)[0][0]:.2f} ({place(worst(rms)[0][1])}).")
     claims = [mine["claim"] for _, mine, _ in c.cases if mine["claim"]]
     if claims:
         print(f"Claimed / measured error: {min(claims):.2f} to {max(claims):.2f}, geometric mean "

@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 
 import meshes
-from field_results import OURS, Comparison, mean
+from field_results import OURS, Comparison, keeps_topology, mean
 from metric import Reference, shape
 
 
@@ -113,6 +113,13 @@ class Comparisons(unittest.TestCase):
         self.assertEqual(best["tool"], "Blender")
         self.assertAlmostEqual(r, 20)  # 1e-5 counts as the floor, 1e-4
         self.assertAlmostEqual(mean(c.against("hausdorff", lambda n: n == "MeshLib")), .5)
+
+    def test_results_of_another_topology_can_be_left_out(self):
+        row = lambda tool, hausdorff, **changed: dict(self.row(tool, hausdorff), **{"nonmanifold": 0, "euler": 0, **changed})
+        c = Comparison(self.table(row(OURS, 2e-3), MeshLib=row("MeshLib", 1e-3, euler=-2), Open3D=row("Open3D", 1e-3, nonmanifold=1),
+                                  Blender=row("Blender", 4e-3)))
+        self.assertAlmostEqual(mean(c.against("hausdorff")), 2)
+        self.assertAlmostEqual(mean(c.against("hausdorff", fits=keeps_topology)), .5)
 
     def test_a_rival_off_the_count_is_left_out(self):
         c = Comparison(self.table(self.row(OURS, 2e-3), MeshLib=self.row("MeshLib", 1e-3, triangles=103),
