@@ -247,9 +247,9 @@ are.
 """, headline(c), f"""
 Of {len(best)} cases ours is at most as far as the best of all in {share(best, 1)}, and at most twice as far in {share(best, 2)}; at
 most 1.1 times as far as the best that keeps nodes in {share(keeps, 1.1)}. RMS: at most that of the best that keeps nodes in
-{share(rms, 1.0005)}. Counting only results with the topology of the original, as ours have (no non-manifold edge more or
-less, the same handles and holes): {mean(same):.2f} times the best of all in the mean, at most {most:.2f} times
-({place(where)}); against those that keep nodes at most {worst(kept)[0][0]:.2f} times, and {worst(kept_rms)[0][0]:.2f} times by RMS.
+{share(rms, 1.0005)}. Counting only results with as many non-manifold edges as the original and its Euler characteristic, as ours
+have: {mean(same):.2f} times the best of all in the mean, at most {most:.2f} times ({place(where)}; {len(same)} cases); against those
+that keep nodes at most {worst(kept)[0][0]:.2f} times, and {worst(kept_rms)[0][0]:.2f} times by RMS ({len(kept)} cases).
 
 """, table(["triangles kept", "Hausdorff / best of all", "Hausdorff / best that keeps nodes", "RMS / best that keeps nodes"],
            [[f"{p:g} %", *(f"{by_percent(some)[p]:.2f}" for some in (best, keeps, rms))] for p in by_percent(rms)])]

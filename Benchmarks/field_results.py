@@ -68,7 +68,7 @@ def keeps_nodes(tool):
 
 
 def keeps_topology(row):
-    """Whether a result has no other non-manifold edges than the original, and as many handles and holes."""
+    """Whether a result has as many non-manifold edges as the original, and its Euler characteristic."""
     return row["nonmanifold"] == 0 and row["euler"] == 0
 
 
@@ -156,8 +156,10 @@ def print_shares(c):
           f"1.3 x the best of all: {share(c.against('rms'), 1.3)}.")
     for label, pick in (("any", lambda n: True), ("those that keep nodes", keeps_nodes)):
         same, rms = (c.against(side, pick, keeps_topology) for side in ("hausdorff", "rms"))
-        print(f"Of {label}, where the result has the topology of the original: Hausdorff {mean(same):.3f}, worst "
-              f"{worst(same)[0][0]:.2f} ({place(worst(same)[0][1])}); RMS worst {worst(rms)[0][0]:.2f} ({place(worst(rms)[0][1])}).")
+        if same:
+            print(f"Of {label}, where the result has the topology of the original ({len(same)} cases): Hausdorff {mean(same):.3f}, "
+                  f"worst {worst(same)[0][0]:.2f} ({place(worst(same)[0][1])}); RMS worst {worst(rms)[0][0]:.2f} "
+                  f"({place(worst(rms)[0][1])}).")
     claims = [mine["claim"] for _, mine, _ in c.cases if mine["claim"]]
     if claims:
         print(f"Claimed / measured error: {min(claims):.2f} to {max(claims):.2f}, geometric mean "

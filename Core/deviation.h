@@ -24,14 +24,14 @@
 /// nearest distances.
 ///
 /// Refused are new triangles that turn away from the old ones on their ring edges, needles more
-/// strictly than others (if no others fill the hole, they may turn by up to 120 degrees); that turn
-/// away from the original normals at all three corners; that lie on a neighbour; and that face away
-/// from the original surface below them.
+/// strictly than others (if no others fill the hole, all but needles may turn by up to 120
+/// degrees); that turn away from the original normals at all three corners; that lie on a
+/// neighbour; and that face away from the original surface below them.
 ///
 /// Cost and error are two things: the queue goes by the error times the 16th root of the hole's
-/// area, that of arrays times the area itself, for the sake of the mean error (deviation.md), which
-/// counts more at last, when few triangles are left; a
-/// shape weight makes holes that leave bad triangles wait.
+/// area, that of arrays times the area itself, for the sake of the mean error, which counts more at
+/// last, when few triangles are left (deviation.md); a shape weight makes holes that leave bad
+/// triangles wait.
 ///
 /// Samples are relative to the removed node and in single precision, and so is the choice among
 /// triangulations; what is about to be made is judged in double precision once more.

@@ -31,7 +31,7 @@ namespace undecimate
 enum class Turn
 {
   Small, ///< the rule above
-  Wide,  ///< up to 120 degrees, needles too: says nothing of folds
+  Wide,  ///< up to 120 degrees; needles as before. That says less of folds
 };
 
 /// A triangle of three nodes of a hole's ring, in the order of the ring.
@@ -82,7 +82,8 @@ public:
   /// Whether the triangle, not degenerate, may be beside one with such a normal (of any length).
   bool follows(const Vector& oldNormal, Turn turn = Turn::Small) const
   {
-    return this->faces(oldNormal, turn == Turn::Small ? this->minimumCosine_ : kWideCosine);
+    const bool wide = turn == Turn::Wide && !this->shapeBelow(kNeedleShape);
+    return this->faces(oldNormal, wide ? kWideCosine : this->minimumCosine_);
   }
 
   /// Whether the normal points away from a direction of any length.

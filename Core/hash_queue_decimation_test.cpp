@@ -1121,6 +1121,8 @@ TEST(Deviation, CoarseRoundPartsThinOut)
     EXPECT_TRUE(testing::isManifoldAndOriented(triangles));
     EXPECT_EQ(testing::eulerCharacteristic(triangles), 0);
     EXPECT_EQ(folds(mesh, triangles), 0);
+    EXPECT_EQ(turnedOver(mesh, triangles), 0);
+    EXPECT_EQ(facingAway(mesh, triangles), 0);
     decimated.cursor.moveTo(decimated.steps());
     EXPECT_TRUE(testing::isOriginal(decimated.cursor, mesh));
   }

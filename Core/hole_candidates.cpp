@@ -52,19 +52,15 @@ UNDECIMATE_INLINE float larger(float a, float b)
   return a > b ? a : b;
 }
 
-UNDECIMATE_INLINE float smaller(float a, float b)
-{
-  return a < b ? a : b;
-}
-
 // What FilledTriangle::follows() asks for.
-UNDECIMATE_INLINE float minimumCosine(float shape)
+// @param widest of well-shaped triangles
+UNDECIMATE_INLINE float minimumCosine(float shape, float widest)
 {
   constexpr float kNeedle = static_cast<float>(FilledTriangle::kNeedleShape);
   constexpr float kCosine = static_cast<float>(FilledTriangle::kMinimumCosine);
   constexpr float kStricter =
     static_cast<float>(FilledTriangle::kNeedleCosine - FilledTriangle::kMinimumCosine);
-  return shape < kNeedle ? kCosine + kStricter * (1.0F - shape / kNeedle) : kCosine;
+  return shape < kNeedle ? kCosine + kStricter * (1.0F - shape / kNeedle) : widest;
 }
 
 } // namespace
@@ -100,6 +96,7 @@ struct HoleKernels
   static bool isSmooth(const HoleCandidates& h, const Vector& normal);
   static void judge(HoleCandidates& h, const HeightFieldDirection& heightField, float widest);
   static void refuseOpposing(HoleCandidates& h);
+  static void refuseReversed(HoleCandidates& h, const Vector& normal);
   static void findCrossings(HoleCandidates& h, const Vector& normal);
   static void findLines(HoleCandidates& h, const Vector& axisX, const Vector& axisY);
   static void measureFew(
@@ -214,7 +211,7 @@ void HoleKernels::spread(HoleCandidates& h, const Vector& normal)
   }
 }
 
-// @param widest cosine that is enough for any triangle
+// @param widest cosine of the largest turn of well-shaped triangles
 UNDECIMATE_VECTOR_CLONES
 void HoleKernels::judge(HoleCandidates& h, const HeightFieldDirection& heightField, float widest)
 {
@@ -254,7 +251,7 @@ void HoleKernels::judge(HoleCandidates& h, const HeightFieldDirection& heightFie
       const float nX = inverse * x;
       const float nY = inverse * y;
       const float nZ = inverse * z;
-      const float cosine = smaller(widest, minimumCosine(shape));
+      const float cosine = minimumCosine(shape, widest);
       const float first =
         nX * h.directions_[0][0][t] + nY * h.directions_[0][1][t] + nZ * h.directions_[0][2][t];
       const float second =
@@ -275,7 +272,7 @@ void HoleKernels::judge(HoleCandidates& h, const HeightFieldDirection& heightFie
   {
     const float third = h.normalX_[0] * h.oldNormals_[0][2] + h.normalY_[0] * h.oldNormals_[1][2] +
       h.normalZ_[0] * h.oldNormals_[2][2];
-    h.blocked_[0] = third > smaller(widest, minimumCosine(h.shape_[0])) ? h.blocked_[0] : HUGE_VALF;
+    h.blocked_[0] = third > minimumCosine(h.shape_[0], widest) ? h.blocked_[0] : HUGE_VALF;
   }
 }
 
@@ -301,6 +298,19 @@ void HoleKernels::refuseOpposing(HoleCandidates& h)
         }
       }
     }
+  }
+}
+
+// Seen along the hole's normal they would lie upside down, and points would be on no side of them.
+void HoleKernels::refuseReversed(HoleCandidates& h, const Vector& normal)
+{
+  const float x = static_cast<float>(normal.x);
+  const float y = static_cast<float>(normal.y);
+  const float z = static_cast<float>(normal.z);
+  for (int t = 0; t < h.size_ * (h.size_ - 1) * (h.size_ - 2) / 6; ++t)
+  {
+    const float along = h.normalX_[t] * x + h.normalY_[t] * y + h.normalZ_[t] * z;
+    h.blocked_[t] = along > 0.0F ? h.blocked_[t] : HUGE_VALF;
   }
 }
 
@@ -612,8 +622,9 @@ void HoleCandidates::judge(const Vector* ringNormals, const Vector& normal,
   }
   HoleKernels::spread(*this, normal);
   HoleKernels::judge(*this, heightField,
-    turn == Turn::Small ? 1.0F : static_cast<float>(FilledTriangle::kWideCosine));
-  if (!HoleKernels::isSmooth(*this, normal))
+    static_cast<float>(
+      turn == Turn::Small ? FilledTriangle::kMinimumCosine : FilledTriangle::kWideCosine));
+  if (turn == Turn::Wide || !HoleKernels::isSmooth(*this, normal))
   {
     HoleKernels::refuseOpposing(*this);
   }

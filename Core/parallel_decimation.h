@@ -448,12 +448,12 @@ private:
     const Append& append)
   {
     Queue& queue = *worker.queue;
-    // As the serial algorithm, far from the goal.
-    const bool isFar = this->goal_.isFar(this->trianglesLeft_);
-    const Index highest = isFar ? this->intervals_->near(limit) : limit;
     Index raised = 0;
     for (std::uint64_t turn = 0; goOn(turn); ++turn)
     {
+      // The order as the serial algorithm's.
+      const bool isFar = this->goal_.isFar(this->trianglesLeft_);
+      const Index highest = isFar ? this->intervals_->near(limit) : limit;
       const Index interval = queue.lowestInterval();
       const Index node = queue.pop();
       if (node == kNone)
@@ -513,12 +513,13 @@ private:
       }
       const bool queued = queue.contains(node);
       Index place = this->places_[node];
+      const bool waits = !queued && place == kNone;
       double expected = 0.0;
       bool isExpected = false;
       if constexpr (kIsQuadric)
       {
         isExpected = worker.criterion.expect(node, hole, isFar, expected);
-        if (!isExpected && queued)
+        if (!isExpected && !waits)
         {
           continue;
         }
@@ -530,7 +531,6 @@ private:
       else if (worker.criterion.isLazy())
       {
         // Evaluated when its turn comes; one that waits outside gets a new chance.
-        const bool waits = !queued && place == kNone;
         place = queued ? queue.interval(node) : waits ? interval : place;
         if (isFar && !waits)
         {

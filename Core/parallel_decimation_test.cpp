@@ -290,6 +290,47 @@ TEST(ParallelDeviation, IsAboutAsNearAsTheSerialOne)
   EXPECT_LT(std::exp(sum / 5.0), 1.04);
 }
 
+class ParallelFarFromTheGoal : public ::testing::TestWithParam<Criterion>
+{
+protected:
+  // More triangles than the exact order begins with.
+  Mesh mesh = field(235);
+  HashQueueDecimationOptions options = parallelOptions(GetParam(), 1);
+
+  ParallelFarFromTheGoal()
+  {
+    EXPECT_GT(mesh.triangleCount(), 105000);
+    options.targetReduction = 0.97;
+  }
+};
+
+// The rough order does not depend on threads, and the result is as near as the serial one's.
+TEST_P(ParallelFarFromTheGoal, TheOrderIsARoughOneToo)
+{
+  Decimated one(mesh, options);
+  options.threads = 3;
+  expectSame(one.result, Decimated(mesh, options).result);
+  options.parallel = false;
+  const Decimated serial(mesh, options);
+  EXPECT_LT(one.result.error, 1.1 * serial.result.error);
+  EXPECT_GT(one.result.error, serial.result.error / 1.1);
+  one.cursor.moveTo(one.steps());
+  EXPECT_TRUE(testing::isOriginal(one.cursor, mesh));
+}
+
+// A node far away puts all others into one part, which is left to one thread from the start to the
+// goal: step by step as without threads, and rough where they are.
+TEST_P(ParallelFarFromTheGoal, OnePartIsDecimatedAsTheSerialOneDoes)
+{
+  mesh.points.insert(mesh.points.end(), { -1e7, -1e7, -1e7 });
+  const Decimated parallel(mesh, options);
+  options.parallel = false;
+  expectSame(parallel.result, Decimated(mesh, options).result);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+  Criteria, ParallelFarFromTheGoal, ::testing::Values(Criterion::Deviation, Criterion::Quadric));
+
 // All costs are equal; nodes must not go part by part.
 TEST(ParallelDeviation, FlatMeshesThinOutEvenly)
 {
