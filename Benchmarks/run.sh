@@ -9,6 +9,7 @@
 #   decimation   filter against filter at 1M nodes: vtkDecimatePro, vtkQuadricDecimation
 #   fast         Scalar Difference and Quadric against meshoptimizer, Deviation against vtkQuadricDecimation, 1M nodes
 #   threads      Parallel with one thread and with two, whole filter, 1M nodes
+#   scaling      how Parallel would scale to 64 cores, computed from the times of the jobs of one run
 #   limit        bytes a removal against the memory's bandwidth and latency
 #   deviation    Hausdorff distance at equal triangle counts over the data set
 #   field        the same against the whole field of decimators, into Benchmarks/results (the first time: hours)
@@ -92,6 +93,7 @@ run() {
       "$python" "$here/fast.py" "$@"
       ;;
     threads) "$python" "$here/threads.py" "$@" ;;
+    scaling) "$python" "$here/scaling.py" --cli "$build/dealt_decimate_cli" "$@" ;;
     limit) "$python" "$here/core.py" limit --timing "$build/core_timing" --memory "$build/memory_limits" "$@" ;;
     deviation) "$python" "$here/deviation.py" --cli "$build/decimate_cli" "$@" ;;
     field)
@@ -117,7 +119,7 @@ run() {
 
 case $part in
   build) ;;
-  linear | fast | threads | limit | decimation | deviation | tri_quad | field | field-ours | field-times | page | peer | test) run "$part" "$@" ;;
+  linear | fast | threads | scaling | limit | decimation | deviation | tri_quad | field | field-ours | field-times | page | peer | test) run "$part" "$@" ;;
   level)
     run level-core
     echo
@@ -151,7 +153,7 @@ case $part in
     run tri_quad --json "${results:-$cache}/tri_quad.json"
     ;;
   *)
-    sed -n '5,23p' "$0" >&2
+    sed -n '5,24p' "$0" >&2
     exit 2
     ;;
 esac
