@@ -317,7 +317,8 @@ errs to one side; the others move nodes or values to the middle, which lowers th
 
 To {field_times.PERCENT:g} % of the triangles, one thread, a process a run, median of three runs (one, where it takes over 2 s). *CPU s*: the
 decimation alone. *With conversion*: from `vtkPolyData` to `vtkPolyData` (Blender: from arrays to arrays). Ours is the whole
-filter, with the record. *Peak*: growth of the peak resident set over what is there with the input.
+filter, with the record. *Peak*: growth of the peak resident set over what is there with the input. All were measured in
+one run, on 22 November 2026; ours has changed since (on a million nodes see [speed.md](speed.md)).
 
 {times(timed)}""")
         if "time" in pictures:
