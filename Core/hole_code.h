@@ -15,14 +15,19 @@
 ///   2 bits for each old triangle      corner (0, 1, 2) at which it has the node
 ///   w bits for each new triangle      the ear, a place in the ring, that it cuts off
 ///   w bits for each new triangle      with sources: the old triangle whose values it shows
-/// w is the number of bits of r - 1. New triangle i has the ring's nodes before, at and behind its
-/// ear, in this order, in the slot of old triangle i.
+///   b bits for each new triangle      its slot, in record order
+///   b bits for each listed node       the two nodes of a triangle that leaves nothing
+/// w is the number of bits of r - 1, b that of the record's numbers (RecordView::numberBits). New
+/// triangle i has the ring's nodes before, at and behind its ear, in this order, in the slot of old
+/// triangle i. The other old triangles have the slots behind the end of the coarser level.
 ///
-/// Memory: 1 + (2 n + w (n - 2)) / 8 bytes a step: 4 with five or six neighbours, 8 with ten.
+/// Memory: 1 + (2 n + (w + b) (n - 2)) / 8 bytes a step; with two million triangles 12 to 15 with
+/// five or six neighbours, 30 with ten.
 
 #ifndef UNDECIMATE_CORE_HOLE_CODE_H
 #define UNDECIMATE_CORE_HOLE_CODE_H
 
+#include "packed_numbers.h"
 #include "record.h"
 
 #include <array>
@@ -45,9 +50,9 @@ struct HoleCounts
   unsigned char oldCount = 0; ///< 0: there is no such hole, and the rest is 0, too
   unsigned char newCount = 0;
   unsigned char ringSize = 0;
-  unsigned char extra = 0;     ///< nodes in the patch: of a triangle that leaves nothing behind
+  unsigned char extra = 0;     ///< listed nodes: of a triangle that leaves nothing behind
   unsigned char placeBits = 0; ///< w
-  unsigned char sizes[2] = {}; ///< bytes of the code without and with sources
+  short formBits[2] = {};      ///< bits before the slots, without and with sources
 
   constexpr HoleCounts() = default;
 
@@ -70,12 +75,18 @@ struct HoleCounts
     }
     for (int parts = 1; parts <= 2; ++parts)
     {
-      this->sizes[parts - 1] =
-        static_cast<unsigned char>((2 * n + parts * this->newCount * this->placeBits + 7) / 8);
+      this->formBits[parts - 1] =
+        static_cast<short>(2 * n + parts * this->newCount * this->placeBits);
     }
   }
 
-  int codeSize(bool hasSources) const { return this->sizes[hasSources ? 1 : 0]; }
+  /// Bytes of the code.
+  /// @param numberBits b
+  int codeSize(bool hasSources, int numberBits) const
+  {
+    return (this->formBits[hasSources ? 1 : 0] + numberBits * (this->newCount + this->extra) + 7) /
+      8;
+  }
 };
 
 /// The sizes of all holes, made once.
@@ -153,14 +164,17 @@ private:
   Neighbours previous_;
 };
 
-/// Reads the code of a hole. It reads up to one byte behind the code.
+/// Reads the code of a hole. It reads up to kPackedPadding bytes behind the code.
 class HoleCode
 {
 public:
-  HoleCode(const HoleCounts& counts, const unsigned char* code)
+  /// @param numberBits b
+  HoleCode(const HoleCounts& counts, const unsigned char* code, bool hasSources, int numberBits)
     : code_(code)
     , places_(2 * counts.oldCount)
+    , numbers_(counts.formBits[hasSources ? 1 : 0])
     , placeBits_(counts.placeBits)
+    , numberBits_(numberBits)
     , newCount_(counts.newCount)
   {
   }
@@ -175,6 +189,13 @@ public:
   /// If there are sources.
   int source(int newTriangle) const { return this->place(this->newCount_ + newTriangle); }
 
+  /// Number i of the patch: the slot of a new triangle or, if there is none, a listed node.
+  Index number(int i) const
+  {
+    return static_cast<Index>(
+      packedBits(this->code_, this->numbers_ + this->numberBits_ * i, this->numberBits_));
+  }
+
 private:
   int place(int i) const
   {
@@ -185,46 +206,11 @@ private:
   }
 
   const unsigned char* code_;
-  int places_; // the first bit of the ears
+  int places_;  // the first bit of the ears
+  int numbers_; // and of the slots
   int placeBits_;
+  int numberBits_;
   int newCount_;
-};
-
-/// Writes the parts of a code in their order: corners, ears, sources.
-class HoleCodeWriter
-{
-public:
-  explicit HoleCodeWriter(unsigned char* code)
-    : code_(code)
-  {
-  }
-
-  /// @param bits at most 8
-  void add(unsigned value, int bits)
-  {
-    this->word_ |= value << this->used_;
-    this->used_ += bits;
-    if (this->used_ >= 8)
-    {
-      *this->code_++ = static_cast<unsigned char>(this->word_);
-      this->word_ >>= 8;
-      this->used_ -= 8;
-    }
-  }
-
-  /// The last byte.
-  void finish()
-  {
-    if (this->used_ > 0)
-    {
-      *this->code_ = static_cast<unsigned char>(this->word_);
-    }
-  }
-
-private:
-  unsigned char* code_;
-  unsigned word_ = 0;
-  int used_ = 0;
 };
 
 } // namespace undecimate

@@ -29,7 +29,7 @@ TEST(HoleCounts, OfEachByte)
     {
       EXPECT_EQ(counts.oldCount, 0);
       EXPECT_EQ(counts.newCount, 0);
-      EXPECT_EQ(counts.codeSize(true), 0);
+      EXPECT_EQ(counts.codeSize(true, 20), 0);
       continue;
     }
     ++holes;
@@ -46,13 +46,15 @@ TEST(HoleCounts, OfEachByte)
 
 TEST(HoleCounts, SizesOfCodes)
 {
-  EXPECT_EQ(kHoles[5].codeSize(false), 3); // 10 + 3 * 3 bits
-  EXPECT_EQ(kHoles[5].codeSize(true), 4);
-  EXPECT_EQ(kHoles[6].codeSize(false), 3); // 12 + 4 * 3
-  EXPECT_EQ(kHoles[10].codeSize(false), 7);
-  EXPECT_EQ(kHoles[64].codeSize(true), 109);
-  EXPECT_EQ(kHoles[holeOf(64, true)].codeSize(true), 127); // the ring has 65 nodes: 7 bits
-  EXPECT_EQ(kHoles[holeOf(1, true)].codeSize(true), 1);
+  EXPECT_EQ(kHoles[5].codeSize(false, 1), 3); // 10 + 3 * (3 + 1) bits
+  EXPECT_EQ(kHoles[5].codeSize(true, 1), 4);
+  EXPECT_EQ(kHoles[5].codeSize(false, 21), 11);
+  EXPECT_EQ(kHoles[6].codeSize(false, 4), 5); // 12 + 4 * (3 + 4)
+  EXPECT_EQ(kHoles[6].codeSize(false, 21), 14);
+  EXPECT_EQ(kHoles[10].codeSize(false, 21), 28);
+  EXPECT_EQ(kHoles[64].codeSize(true, 31), 350);
+  EXPECT_EQ(kHoles[holeOf(64, true)].codeSize(true, 31), 371); // a ring of 65 nodes: 7 bits
+  EXPECT_EQ(kHoles[holeOf(1, true)].codeSize(true, 21), 6);    // two nodes
 }
 
 // What was written is read, by the bits that the file comment promises, and nothing beside the code
@@ -72,11 +74,15 @@ TEST(HoleCode, RandomCodesComeBack)
     std::generate(corners.begin(), corners.end(), [&] { return random() % 3; });
     std::generate(ears.begin(), ears.end(), [&] { return random() % counts.ringSize; });
     std::generate(from.begin(), from.end(), [&] { return random() % counts.oldCount; });
+    const int numberBits = 1 + static_cast<int>(random() % 31);
+    std::vector<int> numbers(counts.newCount + counts.extra);
+    std::generate(numbers.begin(), numbers.end(),
+      [&] { return static_cast<int>(random() & ((std::uint32_t{ 1 } << numberBits) - 1)); });
 
-    const int size = counts.codeSize(sources);
+    const int size = counts.codeSize(sources, numberBits);
     constexpr unsigned char kUntouched = 0xA5;
-    std::vector<unsigned char> bytes(size + 2, kUntouched);
-    HoleCodeWriter writer(bytes.data() + 1);
+    std::vector<unsigned char> bytes(size + 1 + kPackedPadding, kUntouched);
+    BitWriter writer(bytes.data() + 1);
     std::vector<bool> bits;
     const auto add = [&](const std::vector<int>& values, int width)
     {
@@ -92,9 +98,10 @@ TEST(HoleCode, RandomCodesComeBack)
     add(corners, 2);
     add(ears, counts.placeBits);
     add(from, counts.placeBits);
+    add(numbers, numberBits);
     writer.finish();
     ASSERT_EQ(bytes.front(), kUntouched);
-    ASSERT_EQ(bytes.back(), kUntouched);
+    ASSERT_EQ(std::count(bytes.begin() + 1 + size, bytes.end(), kUntouched), kPackedPadding);
     ASSERT_LE(bits.size(), std::size_t{ 8 } * size);
     ASSERT_GT(bits.size() + 8, std::size_t{ 8 } * size);
     for (std::size_t i = 0; i < std::size_t{ 8 } * size; ++i)
@@ -102,7 +109,7 @@ TEST(HoleCode, RandomCodesComeBack)
       ASSERT_EQ((bytes[1 + i / 8] >> i % 8 & 1) != 0, i < bits.size() && bits[i]) << i;
     }
 
-    const HoleCode code(counts, bytes.data() + 1);
+    const HoleCode code(counts, bytes.data() + 1, sources, numberBits);
     for (std::size_t i = 0; i < corners.size(); ++i)
     {
       ASSERT_EQ(code.corner(static_cast<int>(i)), corners[i]);
@@ -114,6 +121,10 @@ TEST(HoleCode, RandomCodesComeBack)
     for (std::size_t i = 0; i < from.size(); ++i)
     {
       ASSERT_EQ(code.source(static_cast<int>(i)), from[i]);
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+    {
+      ASSERT_EQ(code.number(static_cast<int>(i)), numbers[i]);
     }
   }
 }

@@ -52,7 +52,7 @@ Outcome checkPresence(const RecordView& record, const Index* baseCells)
   const Array arrays[] = { { record.nodeOrder, record.nodeCount, "NodeOrder" },
     { record.cellOrder, record.cellCount, "CellOrder" },
     { record.stepErrors, record.stepCount, "StepErrors" },
-    { record.patches, record.patchSize, "Patches" },
+    { record.patches, record.hasCodes ? 0 : record.patchSize, "Patches" },
     { record.stepHoles, record.hasCodes ? record.stepCount : 0, "StepHoles" },
     { record.codes, record.hasCodes ? 1 : 0, "HoleCodes" },
     { record.stepShapes, record.hasCodes ? 0 : record.stepCount, "StepShapes" },
@@ -208,11 +208,14 @@ struct StepCounts
 class ShapeSteps
 {
 public:
+  static constexpr const char* kPatches = "Patches"; // the array that has them
+
   explicit ShapeSteps(const RecordView& record)
     : record_(record)
   {
   }
 
+  // The next step; its patch() and the place of that follow.
   Outcome next(StepCounts& counts)
   {
     const Index step = this->step_++;
@@ -229,22 +232,41 @@ public:
     {
       counts.lostSources = lostSourceCount(bytes, this->record_.cornersPerCell);
     }
+    this->begin_ = this->end_;
+    this->end_ += counts.newCount + counts.extra;
+    if (this->end_ > this->record_.patchSize)
+    {
+      return damaged(kPatches, this->record_.patchSize, "too short");
+    }
     return {};
   }
 
-  Outcome finish() const { return {}; }
+  Index patch(int i) const { return this->record_.patches[this->begin_ + i]; }
+  std::int64_t entry(int i) const { return this->begin_ + i; }
+
+  Outcome finish() const
+  {
+    return this->end_ == this->record_.patchSize ? Outcome{}
+                                                 : damaged(kPatches, this->end_, "too long");
+  }
 
 private:
   const RecordView& record_;
   Index step_ = 0;
+  std::int64_t begin_ = 0; // of the patch
+  std::int64_t end_ = 0;
 };
 
 // The steps of a record with codes, which are checked on the way.
 class CodeSteps
 {
 public:
+  static constexpr const char* kPatches = "HoleCodes";
+
   explicit CodeSteps(const RecordView& record)
     : record_(record)
+    , numberBits_(record.numberBits())
+    , code_(kHoles[0], nullptr, false, 0)
   {
   }
 
@@ -255,14 +277,17 @@ public:
     {
       return damaged("StepHoles", this->step_, "no such hole");
     }
-    const std::int64_t begin = this->position_;
-    this->position_ += hole.codeSize(this->record_.hasSources);
+    const bool hasSources = this->record_.hasSources;
+    const std::int64_t begin = this->end_;
+    this->begin_ = begin;
+    this->end_ += hole.codeSize(hasSources, this->numberBits_);
     ++this->step_;
-    if (this->position_ >= this->record_.codeSize)
+    if (this->end_ + kPackedPadding > this->record_.codeSize)
     {
       return damaged("HoleCodes", this->record_.codeSize, "too short");
     }
-    const HoleCode code(hole, this->record_.codes + begin);
+    this->code_ = HoleCode(hole, this->record_.codes + begin, hasSources, this->numberBits_);
+    const HoleCode& code = this->code_;
     for (int i = 0; i < hole.oldCount; ++i)
     {
       if (code.corner(i) >= kTriangleCorners)
@@ -280,7 +305,7 @@ public:
       }
       gone[ear] = true;
     }
-    if (this->record_.hasSources)
+    if (hasSources)
     {
       std::uint64_t heirs = 0;
       for (int i = 0; i < hole.newCount; ++i)
@@ -299,24 +324,29 @@ public:
     return {};
   }
 
+  Index patch(int i) const { return this->code_.number(i); }
+  std::int64_t entry(int /*i*/) const { return this->begin_; }
+
   Outcome finish() const
   {
-    return this->position_ + 1 == this->record_.codeSize
+    return this->end_ + kPackedPadding == this->record_.codeSize
       ? Outcome{}
-      : damaged("HoleCodes", this->position_, "too long");
+      : damaged("HoleCodes", this->end_, "too long");
   }
 
 private:
   const RecordView& record_;
+  int numberBits_;
+  HoleCode code_;
   Index step_ = 0;
-  std::int64_t position_ = 0;
+  std::int64_t begin_ = 0; // of the code
+  std::int64_t end_ = 0;
 };
 
 template <typename Steps>
 Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
 {
   Steps steps(record);
-  std::int64_t position = 0;
   std::int64_t lost = 0;
   std::int64_t cells = record.baseCellCount;
   for (Index step = 0; step < record.stepCount; ++step)
@@ -330,35 +360,28 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
     {
       return o;
     }
-    if (position + counts.newCount + counts.extra > record.patchSize)
-    {
-      return damaged("Patches", record.patchSize, "too short");
-    }
+    std::array<Index, kMaximumPatchCells> slots;
     for (int i = 0; i < counts.newCount; ++i)
     {
-      const Index slot = record.patches[position + i];
+      const Index slot = steps.patch(i);
       if (slot < 0 || slot >= cells)
       {
-        return damaged("Patches", position + i, "no such cell");
+        return damaged(Steps::kPatches, steps.entry(i), "no such cell");
       }
-      for (int k = 0; k < i; ++k)
+      if (std::find(slots.begin(), slots.begin() + i, slot) != slots.begin() + i)
       {
-        if (record.patches[position + k] == slot)
-        {
-          return damaged("Patches", position + i, "a cell is listed twice");
-        }
+        return damaged(Steps::kPatches, steps.entry(i), "a cell is listed twice");
       }
+      slots[i] = slot;
     }
-    position += counts.newCount;
-    for (int i = 0; i < counts.extra; ++i)
+    for (int i = counts.newCount; i < counts.newCount + counts.extra; ++i)
     {
-      const Index node = record.patches[position + i];
+      const Index node = steps.patch(i);
       if (node < 0 || node >= record.baseNodeCount + step)
       {
-        return damaged("Patches", position + i, "no such node");
+        return damaged(Steps::kPatches, steps.entry(i), "no such node");
       }
     }
-    position += counts.extra;
     cells += counts.oldCount - counts.newCount;
     lost += counts.lostSources;
     const float error = record.stepErrors[step];
@@ -370,10 +393,6 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
   if (Outcome o = steps.finish(); !o)
   {
     return o;
-  }
-  if (position != record.patchSize)
-  {
-    return damaged("Patches", position, "too long");
   }
   if (cells != record.cellCount)
   {
@@ -387,16 +406,25 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
   return {};
 }
 
-Outcome checkSources(const Index* sources, std::int64_t count, Index cellCount, const char* name)
+Outcome checkSources(const RecordView& record)
 {
-  for (std::int64_t i = 0; i < count; ++i)
+  const auto check = [&record](std::int64_t count, const char* name, const auto& source)
   {
-    if (sources[i] < 0 || sources[i] >= cellCount)
+    for (std::int64_t i = 0; i < count; ++i)
     {
-      return damaged(name, i, "no such cell");
+      if (source(i) < 0 || source(i) >= record.cellCount)
+      {
+        return damaged(name, i, "no such cell");
+      }
     }
-  }
-  return {};
+    return Outcome{};
+  };
+  const int bits = record.numberBits();
+  Outcome base = check(
+    record.baseCellCount, "BaseSources", [&](std::int64_t i) { return record.baseSources[i]; });
+  return base ? check(record.lostSourceSize, "LostSources",
+                  [&](std::int64_t i) { return packedNumber(record.lostSources, i, bits); })
+              : base;
 }
 
 /// The order that puts the survivors first, in their original order, and then the others in the
@@ -455,7 +483,7 @@ RecordView Record::view() const
   v.shapes = this->shapes.data();
   v.baseSources = this->baseSources.data();
   v.lostSources = this->lostSources.data();
-  v.lostSourceSize = static_cast<std::int64_t>(this->lostSources.size());
+  v.lostSourceSize = this->lostSourceSize;
   return v;
 }
 
@@ -463,10 +491,9 @@ std::size_t Record::byteSize() const
 {
   return sizeof(Index) *
     (this->nodeOrder.size() + this->cellOrder.size() + this->stepShapes.size() +
-      this->patches.size() + this->shapeOffsets.size() + this->baseSources.size() +
-      this->lostSources.size()) +
+      this->patches.size() + this->shapeOffsets.size() + this->baseSources.size()) +
     sizeof(float) * this->stepErrors.size() + this->shapes.size() + this->stepHoles.size() +
-    this->codes.size();
+    this->codes.size() + this->lostSources.size();
 }
 
 Outcome validateRecord(
@@ -517,15 +544,7 @@ Outcome validateRecord(
   }
   if (record.hasSources)
   {
-    if (Outcome o =
-          checkSources(record.baseSources, record.baseCellCount, record.cellCount, "BaseSources");
-        !o)
-    {
-      return o;
-    }
-    if (Outcome o =
-          checkSources(record.lostSources, record.lostSourceSize, record.cellCount, "LostSources");
-        !o)
+    if (Outcome o = checkSources(record); !o)
     {
       return o;
     }
@@ -544,6 +563,7 @@ struct RecordBuilder::Internals
   std::vector<Index> removedNodes;
   std::vector<Index> freedSlots; // step after step
   std::vector<Index> sources;    // current source of each slot, if tracked
+  std::vector<Index> lostSources; // step after step
   ShapeTable shapeTable;
   float largestError = 0.0F;
 };
@@ -608,7 +628,7 @@ void RecordBuilder::appendCells(const Step& step)
   if (record.hasSources)
   {
     inheritSources(
-      step.sources, step.oldCount, step.newCount, step.slots, in.sources, record.lostSources);
+      step.sources, step.oldCount, step.newCount, step.slots, in.sources, in.lostSources);
   }
   record.stepShapes.push_back(in.shapeTable.number(encoded.shape, encoded.size, record));
   in.largestError = std::max(in.largestError, static_cast<float>(step.error));
@@ -662,8 +682,8 @@ Record RecordBuilder::finish(
   {
     std::reverse(in.removedNodes.begin(), in.removedNodes.end());
     std::reverse(record.stepErrors.begin(), record.stepErrors.end());
-    std::reverse(record.lostSources.begin(), record.lostSources.end());
-    Index* lost = record.lostSources.data();
+    std::reverse(in.lostSources.begin(), in.lostSources.end());
+    Index* lost = in.lostSources.data();
     for (Index step = 0; record.hasSources && step < steps; ++step)
     {
       lost = reverseChunk(lost, lostSourceCount(shapeOf(step), record.cornersPerCell));
@@ -744,6 +764,10 @@ Record RecordBuilder::finish(
       record.baseSources[slot] = in.sources[record.cellOrder[slot]];
     }
     release(in.sources);
+    record.lostSourceSize = static_cast<std::int64_t>(in.lostSources.size());
+    record.lostSources =
+      packed(in.lostSources.data(), record.lostSourceSize, record.view().numberBits());
+    release(in.lostSources);
   }
   return record;
 }

@@ -21,13 +21,13 @@
 /// `cellOrder` lead back to the original numbers.
 ///
 /// **A step** is a form and a patch. The *form* says which corners of the patch's old and new cells
-/// are the same node. The *patch* lists the slots of the new cells, then the nodes that no new cell
+/// are the same node. The *patch* is the slots of the new cells, then the nodes that no new cell
 /// has (only when the form says so). The remaining old cells have the slots just behind the end of
 /// the coarser level. All other nodes are found by reading the cells themselves, in either
 /// direction.
 ///
-/// **Forms** are kept in one of two ways, the same for all steps of a record:
-///   *codes*   a few bits a step, see hole_code.h: node removal from triangles
+/// **Steps** are kept in one of two ways, the same for all steps of a record:
+///   *codes*   form and patch in a few bits, see hole_code.h: node removal from triangles
 ///   *shapes*  corners in numbers local to the patch (0 = the removed node), equal shapes once: all
 ///             kinds of steps, and the triangles of older files
 ///
@@ -36,17 +36,20 @@
 /// Mechanical Engineering 49 (2003), section 2 and fig. 6 (two lists at each removed node: removed
 /// cells and new cells). Kept here as forms, which needs a third of the memory of the lists.
 ///
-/// Memory: 16 bytes a removed node (error 4, original numbers 12), 4 for each new cell of a step (3
-/// to 4 of them, 8 with an order that ignores the mesh such as Angle to XY Plane on a fine grid),
-/// and the codes: 4 to 5 bytes, or 8 there. Shapes take 4 bytes and the table of shapes.
+/// Memory: 16 bytes a removed node (error 4, original numbers 12), and the codes: with two million
+/// triangles 12 to 15 bytes, or 30 with an order that ignores the mesh such as Angle to XY Plane on
+/// a fine grid, where a step has eight new cells. A record with shapes takes 4 bytes for each new
+/// cell, 4 for the shape, and the table of shapes.
 
 #ifndef UNDECIMATE_CORE_RECORD_H
 #define UNDECIMATE_CORE_RECORD_H
 
 #include "monitor.h"
+#include "packed_numbers.h"
 #include "threads.h"
 #include "types.h"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -65,7 +68,8 @@ constexpr unsigned char kNoLocal = 255;
 
 /// A record as flat arrays in somebody's memory (see the file comment for their meaning).
 ///
-/// Codes: the code of each step from hole_code.h, step after step, and one byte 0 behind them.
+/// Codes: the code of each step from hole_code.h, step after step, and kPackedPadding bytes 0 behind
+/// them. Slots and sources that are lost take numberBits() bits each.
 ///
 /// The table of shapes: shape s is the bytes [shapeOffsets[s], shapeOffsets[s + 1]) of `shapes`:
 ///   old, new, extra                  numbers of old cells, new cells, nodes listed in the patch
@@ -90,17 +94,22 @@ struct RecordView
   const Index* nodeOrder = nullptr;  ///< nodeCount: original number of a node
   const Index* cellOrder = nullptr;  ///< cellCount: original number of a slot's cell
   const float* stepErrors = nullptr; ///< stepCount, never increasing: error before step j is undone
-  const Index* patches = nullptr;    ///< patchSize: slots and extra nodes, step after step
   const unsigned char* stepHoles = nullptr; ///< stepCount if hasCodes, see hole_code.h
   const unsigned char* codes = nullptr;     ///< codeSize bytes if hasCodes
-  const Index* stepShapes = nullptr;        ///< stepCount unless hasCodes, as the next two
+  const Index* patches = nullptr;           ///< patchSize unless hasCodes, as the next three:
+                                            ///< slots and listed nodes, step after step
+  const Index* stepShapes = nullptr;        ///< stepCount
   const Index* shapeOffsets = nullptr;      ///< shapeCount + 1
   const unsigned char* shapes = nullptr;    ///< shapeOffsets[shapeCount] bytes
   const Index* baseSources = nullptr;       ///< baseCellCount if hasSources: original cell number
-  const Index* lostSources = nullptr; ///< lostSourceSize if hasSources: of old cells without heir
-  std::int64_t patchSize = 0;
+  const unsigned char* lostSources = nullptr; ///< lostSourceSize packed numbers if hasSources:
+                                              ///< original cells, of old cells without heir
   std::int64_t codeSize = 0;
+  std::int64_t patchSize = 0;
   std::int64_t lostSourceSize = 0;
+
+  /// Bits of a number of a node or a cell, where numbers are packed.
+  int numberBits() const { return bitsBelow(std::max(this->nodeCount, this->cellCount)); }
 };
 
 /// A record that owns its arrays.
@@ -117,14 +126,15 @@ struct Record
   std::vector<Index> nodeOrder;
   std::vector<Index> cellOrder;
   std::vector<float> stepErrors;
-  std::vector<Index> patches;
   std::vector<unsigned char> stepHoles;
   std::vector<unsigned char> codes;
+  std::vector<Index> patches;
   std::vector<Index> stepShapes;
   std::vector<Index> shapeOffsets{ 0 };
   std::vector<unsigned char> shapes;
   std::vector<Index> baseSources;
-  std::vector<Index> lostSources;
+  std::vector<unsigned char> lostSources; ///< packed
+  std::int64_t lostSourceSize = 0;        ///< numbers in there
 
   RecordView view() const;
 

@@ -118,9 +118,9 @@ struct Step
   Index slot(int i) const { return triangleOf(this->corner(i)); }
 };
 
-void writeCode(const Step& step, unsigned char* code)
+// The parts of a step; its numbers follow.
+void writeForm(const Step& step, BitWriter& writer)
 {
-  HoleCodeWriter writer(code);
   for (int i = 0; i < step.counts.oldCount; ++i)
   {
     writer.add(static_cast<unsigned>(cornerOf(step.corner(i))), 2);
@@ -134,7 +134,6 @@ void writeCode(const Step& step, unsigned char* code)
   {
     writer.add(step.sources[i], bits);
   }
-  writer.finish();
 }
 
 } // namespace
@@ -276,6 +275,7 @@ public:
     record.nodeCount = topology.nodeCount();
     record.cellCount = topology.triangleCount();
     record.baseNodeCount = record.nodeCount - this->steps_;
+    this->numberBits_ = record.view().numberBits();
   }
 
   Record make(std::vector<Index>& baseTriangles)
@@ -328,7 +328,6 @@ private:
     Index begin = 0;
     Index end = 0;
     std::size_t slots = 0; // that they free; later those that the blocks up to this one do
-    std::size_t patches = 0;
     std::size_t codes = 0;
     float error = 0.0F; // the largest one
   };
@@ -385,8 +384,7 @@ private:
             const Header header = headerOf(node);
             const HoleCounts& counts = countsOf(header);
             block.slots += counts.oldCount - counts.newCount;
-            block.patches += counts.newCount + counts.extra;
-            block.codes += counts.codeSize(header.hasSources);
+            block.codes += counts.codeSize(header.hasSources, this->numberBits_);
             block.error = std::max(block.error, header.error);
           });
       });
@@ -395,7 +393,6 @@ private:
       Block& block = this->blocks_[i];
       const Block& before = this->blocks_[i - 1];
       block.slots += before.slots;
-      block.patches += before.patches;
       block.codes += before.codes;
       block.error = std::max(block.error, before.error);
     }
@@ -489,6 +486,7 @@ private:
     Record& record = this->record_;
     std::vector<Index> sources(record.cellCount);
     std::iota(sources.begin(), sources.end(), 0);
+    std::vector<Index> lostSources;
     std::vector<unsigned char> counts; // of lost ones
     counts.reserve(this->steps_);
     for (const Block& block : this->blocks_)
@@ -502,19 +500,21 @@ private:
           {
             slots[i] = step.slot(i);
           }
-          const std::size_t before = record.lostSources.size();
+          const std::size_t before = lostSources.size();
           inheritSources(step.sources, step.counts.oldCount, step.counts.newCount, slots.data(),
-            sources, record.lostSources);
-          counts.push_back(static_cast<unsigned char>(record.lostSources.size() - before));
+            sources, lostSources);
+          counts.push_back(static_cast<unsigned char>(lostSources.size() - before));
         });
     }
     // Steps in reverse, each as it is.
-    std::reverse(record.lostSources.begin(), record.lostSources.end());
-    auto lost = record.lostSources.begin();
+    std::reverse(lostSources.begin(), lostSources.end());
+    auto lost = lostSources.begin();
     for (auto count = counts.rbegin(); count != counts.rend(); lost += *count++)
     {
       std::reverse(lost, lost + *count);
     }
+    record.lostSourceSize = static_cast<std::int64_t>(lostSources.size());
+    record.lostSources = packed(lostSources.data(), record.lostSourceSize, this->numberBits_);
     record.baseSources.resize(record.baseCellCount);
     for (Index i = 0; i < record.baseCellCount; ++i)
     {
@@ -527,8 +527,7 @@ private:
     Record& record = this->record_;
     record.stepHoles.resize(this->steps_);
     record.stepErrors.resize(this->steps_);
-    record.patches.resize(this->blocks_.back().patches);
-    record.codes.resize(this->blocks_.back().codes + 1, 0);
+    record.codes.resize(this->blocks_.back().codes + kPackedPadding, 0);
     this->run(static_cast<Index>(this->blocks_.size()), [this](Index i) { this->writeBlock(i); });
   }
 
@@ -537,8 +536,7 @@ private:
     Record& record = this->record_;
     const Block before = number == 0 ? Block() : this->blocks_[number - std::size_t{ 1 }];
     float error = before.error;
-    Index* patch = record.patches.data() + record.patches.size() - before.patches;
-    unsigned char* code = record.codes.data() + record.codes.size() - 1 - before.codes;
+    unsigned char* code = record.codes.data() + record.codes.size() - kPackedPadding - before.codes;
     this->visitSteps(this->blocks_[number],
       [&](Index i, const MeshNode& node)
       {
@@ -548,17 +546,18 @@ private:
         const Index place = this->steps_ - 1 - i;
         record.stepHoles[place] = holeOf(step.header.oldCount, step.header.boundary);
         record.stepErrors[place] = error;
-        code -= counts.codeSize(step.header.hasSources);
-        writeCode(step, code);
-        patch -= counts.newCount + counts.extra;
+        code -= counts.codeSize(step.header.hasSources, this->numberBits_);
+        BitWriter writer(code);
+        writeForm(step, writer);
         for (int k = 0; k < counts.newCount; ++k)
         {
-          patch[k] = this->slots_[step.slot(k)];
+          writer.add(this->slots_[step.slot(k)], this->numberBits_);
         }
         for (int k = 0; k < counts.extra; ++k)
         {
-          patch[k] = this->nodes_[step.ring[k]];
+          writer.add(this->nodes_[step.ring[k]], this->numberBits_);
         }
+        writer.finish();
       });
   }
 
@@ -566,6 +565,7 @@ private:
   std::vector<Index>& removed_;
   Threads* threads_;
   Index steps_;
+  int numberBits_ = 0;
   Record record_;
   std::vector<Block> blocks_;
   LargeArray<Index> slots_; // record numbers of the slots

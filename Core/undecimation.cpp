@@ -20,11 +20,10 @@ namespace
 constexpr int kTriangleCorners = 3;
 constexpr int kMixedCorners = 4;
 
-constexpr int kAhead = 48; // entries of patches from a step to the one whose cells are fetched
-
-// The forms of steps (see RecordView), as the cursor reads them. Each visits the corners of its new
-// and of its old cells: visit(cell, corner, local number). Number 0 is the removed node, and those
-// from firstListed on are the nodes that the patch lists.
+// Steps (see RecordView), as the cursor reads them. Each visits the corners of its new and of its
+// old cells: visit(cell, corner, local number). Number 0 is the removed node, and those from
+// firstListed on are the nodes that the patch lists. patch(i) are the slots of the new cells and
+// then these nodes.
 
 // A step that has a shape.
 template <int Corners>
@@ -33,11 +32,17 @@ class ShapeStep
 public:
   static constexpr int kCorners = Corners;
 
-  static int codeSize(const RecordView& /*record*/, Index /*step*/) { return 0; }
-
-  ShapeStep(const RecordView& record, Index step, std::int64_t /*codePosition*/)
+  // How far it is to the next step.
+  static int size(const RecordView& record, Index step, int /*numberBits*/)
   {
-    const unsigned char* bytes = record.shapes + record.shapeOffsets[record.stepShapes[step]];
+    const unsigned char* bytes = shapeOf(record, step);
+    return bytes[1] + bytes[2];
+  }
+
+  ShapeStep(const RecordView& record, Index step, std::int64_t position, int /*numberBits*/)
+    : patch_(record.patches + position)
+  {
+    const unsigned char* bytes = shapeOf(record, step);
     this->oldCount = bytes[0];
     this->newCount = bytes[1];
     this->extra = bytes[2];
@@ -74,8 +79,13 @@ public:
     visitCells(this->oldCells_, this->oldCount, visit);
   }
   int source(int newCell) const { return this->sources_[newCell]; }
+  Index patch(int i) const { return this->patch_[i]; }
 
 private:
+  static const unsigned char* shapeOf(const RecordView& record, Index step)
+  {
+    return record.shapes + record.shapeOffsets[record.stepShapes[step]];
+  }
   template <typename Visit>
   static void visitCells(const unsigned char* locals, int count, Visit& visit)
   {
@@ -88,6 +98,7 @@ private:
     }
   }
 
+  const Index* patch_;
   const unsigned char* oldCells_;
   const unsigned char* newCells_;
   const unsigned char* sources_;
@@ -99,13 +110,15 @@ class CodeStep
 public:
   static constexpr int kCorners = kTriangleCorners;
 
-  static int codeSize(const RecordView& record, Index step)
+  static int size(const RecordView& record, Index step, int numberBits)
   {
-    return kHoles[record.stepHoles[step]].codeSize(record.hasSources);
+    return kHoles[record.stepHoles[step]].codeSize(record.hasSources, numberBits);
   }
 
-  CodeStep(const RecordView& record, Index step, std::int64_t codePosition)
-    : CodeStep(kHoles[record.stepHoles[step]], record.codes + codePosition)
+  CodeStep(const RecordView& record, Index step, std::int64_t position, int numberBits)
+    : CodeStep(kHoles[record.stepHoles[step]],
+        HoleCode(kHoles[record.stepHoles[step]], record.codes + position, record.hasSources,
+          numberBits))
   {
   }
 
@@ -144,13 +157,14 @@ public:
     }
   }
   int source(int newCell) const { return this->code_.source(newCell); }
+  Index patch(int i) const { return this->code_.number(i); }
 
 private:
-  CodeStep(const HoleCounts& counts, const unsigned char* code)
+  CodeStep(const HoleCounts& counts, const HoleCode& code)
     : oldCount(counts.oldCount)
     , newCount(counts.newCount)
     , extra(counts.extra)
-    , code_(counts, code)
+    , code_(code)
     , ringSize_(counts.ringSize)
   {
   }
@@ -160,6 +174,59 @@ private:
 };
 
 } // namespace
+
+// Steps read and write cells here and there: a scout that goes some steps ahead fetches them.
+template <typename Step>
+class Undecimation::Scout
+{
+public:
+  Scout(const Undecimation& cursor, Index goal)
+    : cursor_(cursor)
+    , goal_(goal)
+    , step_(cursor.steps_)
+    , position_(cursor.position_)
+  {
+    for (int i = 0; i < kAhead; ++i)
+    {
+      this->advance();
+    }
+  }
+
+  // One step, unless it is there.
+  void advance()
+  {
+    const RecordView& record = this->cursor_.record_;
+    const int bits = this->cursor_.numberBits_;
+    if (this->step_ < this->goal_)
+    {
+      this->fetch();
+      this->position_ += Step::size(record, this->step_++, bits);
+    }
+    else if (this->step_ > this->goal_)
+    {
+      this->position_ -= Step::size(record, --this->step_, bits);
+      this->fetch();
+    }
+  }
+
+private:
+  static constexpr int kAhead = 12;
+
+  void fetch() const
+  {
+    const Step step(
+      this->cursor_.record_, this->step_, this->position_, this->cursor_.numberBits_);
+    for (int i = 0; i < step.newCount; ++i)
+    {
+      prefetch(this->cursor_.cells_.data() + std::ptrdiff_t{ Step::kCorners } * step.patch(i));
+    }
+  }
+
+  const Undecimation& cursor_;
+  Index goal_;
+  Index step_;
+  std::int64_t position_;
+};
 
 Outcome Undecimation::open(const RecordView& record, const Index* baseCells, Monitor* monitor)
 {
@@ -179,6 +246,7 @@ Outcome Undecimation::check(
   this->cells_.resize(static_cast<std::size_t>(record.cornersPerCell) * record.cellCount);
   this->sources_.resize(record.hasSources ? record.cellCount : 0);
   this->record_ = record;
+  this->numberBits_ = record.numberBits();
   this->standAtBase(baseCells);
   // Whether the steps fit together shows only when they are walked.
   const MonitorShare walk = progress.part(validation, 1.0);
@@ -198,6 +266,7 @@ Outcome Undecimation::check(
 template <typename Step>
 Outcome Undecimation::walkAll(const MonitorShare& walk)
 {
+  Scout<Step> scout(*this, this->record_.stepCount);
   while (this->steps_ < this->record_.stepCount)
   {
     if (!walk.updateAt(this->steps_, this->record_.stepCount))
@@ -207,9 +276,11 @@ Outcome Undecimation::walkAll(const MonitorShare& walk)
     if (!this->isNextStepSound<Step>())
     {
       return { Status::InvalidRecord,
-        "Record array 'Patches' is damaged: step " + std::to_string(this->steps_) +
+        std::string("Record array '") + (this->record_.hasCodes ? "HoleCodes" : "Patches") +
+          "' is damaged: step " + std::to_string(this->steps_) +
           " does not fit the cells of its level." };
     }
+    scout.advance();
     this->refine<Step>();
   }
   return {};
@@ -226,8 +297,7 @@ void Undecimation::standAtBase(const Index* baseCells)
   }
   this->steps_ = 0;
   this->cellCount_ = this->record_.baseCellCount;
-  this->patchPosition_ = 0;
-  this->codePosition_ = 0;
+  this->position_ = 0;
   this->lostPosition_ = 0;
 }
 
@@ -236,11 +306,10 @@ void Undecimation::standAtBase(const Index* baseCells)
 template <typename Step>
 bool Undecimation::isNextStepSound() const
 {
-  const Step step(this->record_, this->steps_, this->codePosition_);
-  const Index* slots = this->record_.patches + this->patchPosition_;
+  const Step step(this->record_, this->steps_, this->position_, this->numberBits_);
   const Index* cells = this->cells_.data();
-  const auto nodeAt = [slots, cells](int cell, int corner)
-  { return cells[std::size_t{ Step::kCorners } * slots[cell] + corner]; };
+  const auto nodeAt = [&step, cells](int cell, int corner)
+  { return cells[std::size_t{ Step::kCorners } * step.patch(cell) + corner]; };
   Index locals[256];
   step.visitNew([&](int cell, int corner, int local) { locals[local] = nodeAt(cell, corner); });
   bool sound = true;
@@ -302,12 +371,15 @@ void Undecimation::walkTo(Index goal)
 template <typename Step>
 void Undecimation::walk(Index goal)
 {
+  Scout<Step> scout(*this, goal);
   while (this->steps_ < goal)
   {
+    scout.advance();
     this->refine<Step>();
   }
   while (this->steps_ > goal)
   {
+    scout.advance();
     this->coarsen<Step>();
   }
 }
@@ -334,15 +406,17 @@ double Undecimation::error() const
   return this->steps_ < this->record_.stepCount ? this->record_.stepErrors[this->steps_] : 0.0;
 }
 
-// Steps read and write cells here and there: those of later steps are fetched meanwhile.
-template <int Corners>
-void Undecimation::prefetchCells(std::int64_t patchPosition, int count) const
+// Slots of a step's old cells; cellCount_ is that of the coarser level.
+template <typename Step>
+void Undecimation::findSlots(const Step& step, Index* slots) const
 {
-  const std::int64_t begin = std::max<std::int64_t>(0, patchPosition);
-  const std::int64_t end = std::min(this->record_.patchSize, patchPosition + count);
-  for (std::int64_t i = begin; i < end; ++i)
+  for (int i = 0; i < step.newCount; ++i)
   {
-    prefetch(this->cells_.data() + std::ptrdiff_t{ Corners } * this->record_.patches[i]);
+    slots[i] = step.patch(i);
+  }
+  for (int i = step.newCount; i < step.oldCount; ++i)
+  {
+    slots[i] = this->cellCount_ + i - step.newCount;
   }
 }
 
@@ -351,20 +425,22 @@ template <typename Step>
 void Undecimation::refine()
 {
   constexpr std::size_t corners = Step::kCorners;
-  const Step step(this->record_, this->steps_, this->codePosition_);
-  const Index* slots = this->record_.patches + this->patchPosition_;
-  this->prefetchCells<Step::kCorners>(this->patchPosition_ + kAhead, step.newCount);
-  const auto slotOf = [this, slots, &step](int i)
-  { return i < step.newCount ? slots[i] : this->cellCount_ + i - step.newCount; };
+  const Step step(this->record_, this->steps_, this->position_, this->numberBits_);
+  Index slots[kMaximumPatchCells];
+  this->findSlots(step, slots);
   Index* cells = this->cells_.data();
   Index locals[256];
   step.visitNew([&](int cell, int corner, int local)
     { locals[local] = cells[corners * slots[cell] + corner]; });
   locals[kNoLocal] = kNone;
   locals[0] = this->record_.baseNodeCount + this->steps_;
-  std::copy_n(slots + step.newCount, step.extra, locals + step.firstListed());
+  const int firstListed = step.firstListed();
+  for (int i = 0; i < step.extra; ++i)
+  {
+    locals[firstListed + i] = step.patch(step.newCount + i);
+  }
   step.visitOld([&](int cell, int corner, int local)
-    { cells[corners * slotOf(cell) + corner] = locals[local]; });
+    { cells[corners * slots[cell] + corner] = locals[local]; });
   if (this->record_.hasSources)
   {
     Index old[kMaximumPatchCells];
@@ -375,12 +451,12 @@ void Undecimation::refine()
     }
     for (int i = 0; i < step.oldCount; ++i)
     {
-      this->sources_[slotOf(i)] =
-        old[i] != kNone ? old[i] : this->record_.lostSources[this->lostPosition_++];
+      this->sources_[slots[i]] = old[i] != kNone
+        ? old[i]
+        : packedNumber(this->record_.lostSources, this->lostPosition_++, this->numberBits_);
     }
   }
-  this->patchPosition_ += step.newCount + step.extra;
-  this->codePosition_ += Step::codeSize(this->record_, this->steps_);
+  this->position_ += Step::size(this->record_, this->steps_, this->numberBits_);
   this->cellCount_ += step.oldCount - step.newCount;
   ++this->steps_;
 }
@@ -391,18 +467,15 @@ void Undecimation::coarsen()
 {
   constexpr std::size_t corners = Step::kCorners;
   --this->steps_;
-  this->codePosition_ -= Step::codeSize(this->record_, this->steps_);
-  const Step step(this->record_, this->steps_, this->codePosition_);
-  this->patchPosition_ -= step.newCount + step.extra;
+  this->position_ -= Step::size(this->record_, this->steps_, this->numberBits_);
+  const Step step(this->record_, this->steps_, this->position_, this->numberBits_);
   this->cellCount_ -= step.oldCount - step.newCount;
-  const Index* slots = this->record_.patches + this->patchPosition_;
-  this->prefetchCells<Step::kCorners>(this->patchPosition_ - kAhead, step.newCount);
-  const auto slotOf = [this, slots, &step](int i)
-  { return i < step.newCount ? slots[i] : this->cellCount_ + i - step.newCount; };
+  Index slots[kMaximumPatchCells];
+  this->findSlots(step, slots);
   Index* cells = this->cells_.data();
   Index locals[256];
   step.visitOld([&](int cell, int corner, int local)
-    { locals[local] = cells[corners * slotOf(cell) + corner]; });
+    { locals[local] = cells[corners * slots[cell] + corner]; });
   locals[kNoLocal] = kNone;
   step.visitNew([&](int cell, int corner, int local)
     { cells[corners * slots[cell] + corner] = locals[local]; });
@@ -412,7 +485,7 @@ void Undecimation::coarsen()
     std::uint64_t heirs = 0;
     for (int i = 0; i < step.oldCount; ++i)
     {
-      old[i] = this->sources_[slotOf(i)];
+      old[i] = this->sources_[slots[i]];
     }
     for (int i = 0; i < step.newCount; ++i)
     {

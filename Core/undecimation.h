@@ -76,8 +76,10 @@ private:
   void standAtBase(const Index* baseCells);
   template <typename Step>
   bool isNextStepSound() const;
-  template <int Corners>
-  void prefetchCells(std::int64_t patchPosition, int count) const;
+  template <typename Step>
+  class Scout;
+  template <typename Step>
+  void findSlots(const Step& step, Index* slots) const;
   template <typename Step>
   void refine();
   template <typename Step>
@@ -92,9 +94,9 @@ private:
   std::vector<Index> sources_;
   Index steps_ = 0;
   Index cellCount_ = 0;
-  std::int64_t patchPosition_ = 0; // in record_.patches: first entry of step steps_
-  std::int64_t codePosition_ = 0;  // in record_.codes: that of step steps_
-  std::int64_t lostPosition_ = 0;  // in record_.lostSources
+  int numberBits_ = 0;            // of record_
+  std::int64_t position_ = 0;     // of step steps_ in record_.codes, or in record_.patches
+  std::int64_t lostPosition_ = 0; // in record_.lostSources
 };
 
 } // namespace undecimate

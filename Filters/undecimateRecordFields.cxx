@@ -198,6 +198,15 @@ public:
 
   const std::string& problem() const { return this->problem_; }
 
+  /// The first problem counts.
+  void fail(const std::string& what)
+  {
+    if (this->problem_.empty())
+    {
+      this->problem_ = damaged(what);
+    }
+  }
+
   /// A flat array of numbers of the size and kind of Value; null if size is 0 or on a problem.
   template <class Value>
   const Value* read(const char* name, std::int64_t size)
@@ -264,14 +273,6 @@ private:
       array = nullptr;
     }
     return array;
-  }
-
-  void fail(const std::string& what)
-  {
-    if (this->problem_.empty())
-    {
-      this->problem_ = damaged(what);
-    }
   }
 
   vtkFieldData* fields_;
@@ -470,6 +471,37 @@ std::string compareMesh(
   return text;
 }
 
+// Of version 3 as they are; earlier ones have them in 32 bits each.
+void readLostSources(FieldReader& reader, RecordFields& record)
+{
+  constexpr const char* name = "LostSources";
+  RecordView& view = record.view;
+  const std::int64_t size = view.hasSources ? view.lostSourceSize : 0;
+  const int bits = view.numberBits();
+  if (size > std::int64_t{ kMaximumPatchCells } * view.stepCount)
+  {
+    reader.fail("header entry " + std::to_string(kLostSourceSize) + " is " + std::to_string(size));
+    return;
+  }
+  if (view.hasCodes)
+  {
+    view.lostSources =
+      reader.read<unsigned char>(name, view.hasSources ? packedSize(size, bits) : 0);
+    return;
+  }
+  if (const Index* sources = reader.read<Index>(name, size))
+  {
+    const auto known = [&view](Index source) { return source >= 0 && source < view.cellCount; };
+    if (!std::all_of(sources, sources + size, known))
+    {
+      reader.fail("array '" + kPrefix + name + "' has the number of a cell that does not exist");
+      return;
+    }
+    record.lostSources = packed(sources, size, bits);
+    view.lostSources = record.lostSources.data();
+  }
+}
+
 void readArrays(FieldReader& reader, RecordFields& record)
 {
   const std::int64_t* header = record.header;
@@ -488,7 +520,6 @@ void readArrays(FieldReader& reader, RecordFields& record)
   view.nodeOrder = reader.read<Index>("NodeOrder", view.nodeCount);
   view.cellOrder = reader.read<Index>("CellOrder", view.cellCount);
   view.stepErrors = reader.read<float>("StepErrors", view.stepCount);
-  view.patches = reader.read<Index>("Patches", view.patchSize);
   if (view.hasCodes)
   {
     view.codeSize = header[kFormCount];
@@ -497,6 +528,7 @@ void readArrays(FieldReader& reader, RecordFields& record)
   }
   else
   {
+    view.patches = reader.read<Index>("Patches", view.patchSize);
     view.shapeCount = static_cast<Index>(header[kFormCount]);
     view.stepShapes = reader.read<Index>("StepShapes", view.stepCount);
     view.shapeOffsets = reader.read<Index>("ShapeOffsets", view.shapeCount + std::int64_t{ 1 });
@@ -508,8 +540,7 @@ void readArrays(FieldReader& reader, RecordFields& record)
   }
   view.baseSources =
     reader.read<Index>("BaseSources", view.hasSources ? view.baseCellCount : Index{ 0 });
-  view.lostSources =
-    reader.read<Index>("LostSources", view.hasSources ? view.lostSourceSize : std::int64_t{ 0 });
+  readLostSources(reader, record);
 }
 
 void readValues(vtkPolyData* mesh, FieldReader& reader, RecordFields& record)
@@ -579,14 +610,13 @@ RecordArrays::RecordArrays(Record& record)
   header[kFormCount] = record.hasCodes ? static_cast<std::int64_t>(record.codes.size())
                                        : static_cast<std::int64_t>(record.shapeOffsets.size()) - 1;
   header[kPatchSize] = static_cast<std::int64_t>(record.patches.size());
-  header[kLostSourceSize] = static_cast<std::int64_t>(record.lostSources.size());
+  header[kLostSourceSize] = record.lostSourceSize;
   header[kCornersPerCell] = record.cornersPerCell;
   header[kHasSources] = record.hasSources;
   vtkFieldData* fields = this->fields_;
   write<vtkTypeInt32Array>(fields, "NodeOrder", record.nodeOrder);
   write<vtkTypeInt32Array>(fields, "CellOrder", record.cellOrder);
   write<vtkFloatArray>(fields, "StepErrors", record.stepErrors);
-  write<vtkTypeInt32Array>(fields, "Patches", record.patches);
   if (record.hasCodes)
   {
     write<vtkUnsignedCharArray>(fields, "StepHoles", record.stepHoles);
@@ -594,12 +624,13 @@ RecordArrays::RecordArrays(Record& record)
   }
   else
   {
+    write<vtkTypeInt32Array>(fields, "Patches", record.patches);
     write<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes);
     write<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets);
     write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
   }
   write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
-  write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
+  write<vtkUnsignedCharArray>(fields, "LostSources", record.lostSources);
   for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = fields->GetAbstractArray(i);

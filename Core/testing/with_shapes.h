@@ -45,16 +45,19 @@ inline Record withShapes(
     return nodes;
   };
   cursor.moveTo(cursor.stepCount());
-  std::size_t patch = record.patches.size();
-  std::size_t code = record.codes.size() - 1;
+  const int bits = record.view().numberBits();
+  std::size_t end = record.codes.size() - kPackedPadding;
   while (cursor.steps() > 0)
   {
     const Index place = cursor.steps() - 1;
     const HoleCounts& counts = kHoles[record.stepHoles[place]];
-    patch -= counts.newCount + counts.extra;
-    code -= counts.codeSize(record.hasSources);
-    std::vector<Index> slots(
-      record.patches.begin() + patch, record.patches.begin() + patch + counts.newCount);
+    end -= counts.codeSize(record.hasSources, bits);
+    const HoleCode code(counts, record.codes.data() + end, record.hasSources, bits);
+    std::vector<Index> slots;
+    for (int i = 0; i < counts.newCount; ++i)
+    {
+      slots.push_back(code.number(i));
+    }
     const Index gone = counts.oldCount - counts.newCount;
     for (Index i = 0; i < gone; ++i)
     {
@@ -84,11 +87,10 @@ inline Record withShapes(
     };
     const std::vector<unsigned char> oldCells = positions(oldNodes);
     const std::vector<unsigned char> newCells = positions(newNodes);
-    const HoleCode holeCode(counts, record.codes.data() + code);
     std::array<unsigned char, kMaximumPatchCells> sources{};
     for (int i = 0; record.hasSources && i < counts.newCount; ++i)
     {
-      sources[i] = static_cast<unsigned char>(holeCode.source(i));
+      sources[i] = static_cast<unsigned char>(code.source(i));
     }
     for (Index& slot : slots)
     {

@@ -181,6 +181,13 @@ enum class Way
   Parallel     // by one thread: the counters know no others, which need little of their own
 };
 
+// Most bytes of a removed node in the record. An order that ignores the mesh has large holes.
+double recordBound(Criterion criterion, Way way)
+{
+  const bool sources = way == Way::WithSources;
+  return criterion == Criterion::AngleToXYPlane ? (sources ? 60 : 50) : (sources ? 39 : 33);
+}
+
 void measure(const Grid& grid, const char* name, Criterion criterion, Way way, double peakBound)
 {
   const bool sources = way == Way::WithSources;
@@ -209,7 +216,8 @@ void measure(const Grid& grid, const char* name, Criterion criterion, Way way, d
   std::printf("%s%s, %.0f nodes to %d\n", name, ways[static_cast<int>(way)], nodes,
     result.record.baseNodeCount);
   check("decimation, largest, a node", static_cast<double>(peakBytes - before) / nodes, peakBound);
-  checkRecord(result.record, result.baseTriangles, sources ? 46 : 37, sources ? 33 : 25);
+  checkRecord(
+    result.record, result.baseTriangles, recordBound(criterion, way), sources ? 33 : 25);
 }
 
 // Quads that move over time, without the positions, which are the caller's.
@@ -274,6 +282,8 @@ int main(int argc, char* argv[])
   measure(grid, "Quadric", Criterion::Quadric, Way::Plain, 170);
   measure(grid, "Deviation", Criterion::Deviation, Way::Plain, 230);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::WithSources, 165);
+  measure(grid, "Angle to XY Plane", Criterion::AngleToXYPlane, Way::Plain, 165);
+  measure(grid, "Angle to XY Plane", Criterion::AngleToXYPlane, Way::WithSources, 175);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Parallel, 172);
   measure(grid, "Quadric", Criterion::Quadric, Way::Parallel, 205);
   measure(grid, "Deviation", Criterion::Deviation, Way::Parallel, 250);
