@@ -27,6 +27,7 @@
 #ifndef UNDECIMATE_CORE_HOLE_CODE_H
 #define UNDECIMATE_CORE_HOLE_CODE_H
 
+#include "compiler.h"
 #include "packed_numbers.h"
 #include "record.h"
 
@@ -211,6 +212,45 @@ private:
   int placeBits_;
   int numberBits_;
   int newCount_;
+};
+
+/// The old triangles of a hole of which the sources are known, while those that are lost come back
+/// in their order: the ones from which new triangles take their values and, later, those before.
+class KnownSources
+{
+public:
+  /// @param source int(newTriangle): the old triangle from which it takes its values
+  template <typename Source>
+  KnownSources(int newCount, int oldCount, const Source& source)
+    : oldCount_(oldCount)
+  {
+    for (int i = 0; i < newCount; ++i)
+    {
+      this->known_ |= std::uint64_t{ 1 } << source(i);
+    }
+  }
+
+  bool has(int oldTriangle) const { return (this->known_ >> oldTriangle & 1) != 0; }
+  int count() const { return countBits(this->known_); }
+  void add(int oldTriangle) { this->known_ |= std::uint64_t{ 1 } << oldTriangle; }
+
+  /// The first of them that shows a source, or -1.
+  /// @param sources of the old triangles, where they are known
+  int placeOf(Index source, const Index* sources) const
+  {
+    for (int i = 0; i < this->oldCount_; ++i)
+    {
+      if (sources[i] == source && this->has(i))
+      {
+        return i;
+      }
+    }
+    return -1;
+  }
+
+private:
+  int oldCount_;
+  std::uint64_t known_ = 0;
 };
 
 } // namespace undecimate

@@ -49,8 +49,9 @@ Outcome checkPresence(const RecordView& record, const Index* baseCells)
     std::int64_t size;
     const char* name;
   };
+  const bool hasLostList = record.hasSources && !record.hasCodes;
   const Array arrays[] = { { record.nodeOrder, record.nodeCount, "NodeOrder" },
-    { record.cellOrder, record.cellCount, "CellOrder" },
+    { record.cellOrder, record.stepsOrderCells() ? 0 : record.cellCount, "CellOrder" },
     { record.stepErrors, record.stepCount, "StepErrors" },
     { record.patches, record.hasCodes ? 0 : record.patchSize, "Patches" },
     { record.stepHoles, record.hasCodes ? record.stepCount : 0, "StepHoles" },
@@ -59,7 +60,8 @@ Outcome checkPresence(const RecordView& record, const Index* baseCells)
     { record.shapeOffsets, record.hasCodes ? 0 : 1, "ShapeOffsets" },
     { record.shapes, record.hasCodes ? 0 : record.shapeCount, "Shapes" },
     { record.baseSources, record.hasSources ? record.baseCellCount : 0, "BaseSources" },
-    { record.lostSources, record.hasSources ? record.lostSourceSize : 0, "LostSources" },
+    { record.lostSources, hasLostList ? record.lostSourceSize : 0, "LostSources" },
+    { record.lostSourceCodes, record.stepsOrderCells() ? 1 : 0, "LostSources" },
     { baseCells, record.baseCellCount, "cells of the coarse mesh" } };
   for (const Array& array : arrays)
   {
@@ -201,7 +203,7 @@ struct StepCounts
   int oldCount = 0;
   int newCount = 0;
   int extra = 0;
-  int lostSources = 0; // if there are sources
+  int lostSources = 0; // of shapes, if there are sources
 };
 
 // The steps of a record with shapes, in their order; the shapes are sound.
@@ -305,18 +307,12 @@ public:
       }
       gone[ear] = true;
     }
-    if (hasSources)
+    for (int i = 0; hasSources && i < hole.newCount; ++i)
     {
-      std::uint64_t heirs = 0;
-      for (int i = 0; i < hole.newCount; ++i)
+      if (code.source(i) >= hole.oldCount)
       {
-        if (code.source(i) >= hole.oldCount)
-        {
-          return damaged("HoleCodes", begin, "unknown source");
-        }
-        heirs |= std::uint64_t{ 1 } << code.source(i);
+        return damaged("HoleCodes", begin, "unknown source");
       }
-      counts.lostSources = hole.oldCount - countBits(heirs);
     }
     counts.oldCount = hole.oldCount;
     counts.newCount = hole.newCount;
@@ -399,32 +395,23 @@ Outcome checkSteps(const RecordView& record, const MonitorShare& progress)
     return damaged(record.hasCodes ? "StepHoles" : "StepShapes", record.stepCount,
       "the steps do not lead to all cells");
   }
-  if (record.hasSources && lost != record.lostSourceSize)
+  if (record.hasSources && !record.hasCodes && lost != record.lostSourceSize)
   {
     return damaged("LostSources", lost, "wrong length");
   }
   return {};
 }
 
-Outcome checkSources(const RecordView& record)
+Outcome checkSources(const Index* sources, std::int64_t count, Index cellCount, const char* name)
 {
-  const auto check = [&record](std::int64_t count, const char* name, const auto& source)
+  for (std::int64_t i = 0; i < count; ++i)
   {
-    for (std::int64_t i = 0; i < count; ++i)
+    if (sources[i] < 0 || sources[i] >= cellCount)
     {
-      if (source(i) < 0 || source(i) >= record.cellCount)
-      {
-        return damaged(name, i, "no such cell");
-      }
+      return damaged(name, i, "no such cell");
     }
-    return Outcome{};
-  };
-  const int bits = record.numberBits();
-  Outcome base = check(
-    record.baseCellCount, "BaseSources", [&](std::int64_t i) { return record.baseSources[i]; });
-  return base ? check(record.lostSourceSize, "LostSources",
-                  [&](std::int64_t i) { return packedNumber(record.lostSources, i, bits); })
-              : base;
+  }
+  return {};
 }
 
 /// The order that puts the survivors first, in their original order, and then the others in the
@@ -483,7 +470,9 @@ RecordView Record::view() const
   v.shapes = this->shapes.data();
   v.baseSources = this->baseSources.data();
   v.lostSources = this->lostSources.data();
-  v.lostSourceSize = this->lostSourceSize;
+  v.lostSourceSize = static_cast<std::int64_t>(this->lostSources.size());
+  v.lostSourceCodes = this->lostSourceCodes.data();
+  v.lostCodeSize = static_cast<std::int64_t>(this->lostSourceCodes.size());
   return v;
 }
 
@@ -491,9 +480,10 @@ std::size_t Record::byteSize() const
 {
   return sizeof(Index) *
     (this->nodeOrder.size() + this->cellOrder.size() + this->stepShapes.size() +
-      this->patches.size() + this->shapeOffsets.size() + this->baseSources.size()) +
+      this->patches.size() + this->shapeOffsets.size() + this->baseSources.size() +
+      this->lostSources.size()) +
     sizeof(float) * this->stepErrors.size() + this->shapes.size() + this->stepHoles.size() +
-    this->codes.size() + this->lostSources.size();
+    this->codes.size() + this->lostSourceCodes.size();
 }
 
 Outcome validateRecord(
@@ -518,8 +508,9 @@ Outcome validateRecord(
   {
     return o;
   }
-  if (Outcome o =
-        checkPermutation(record.cellOrder, record.cellCount, "CellOrder", progress.part(0.2, 0.5));
+  if (Outcome o = record.stepsOrderCells() ? Outcome{}
+                                           : checkPermutation(record.cellOrder, record.cellCount,
+                                               "CellOrder", progress.part(0.2, 0.5));
       !o)
   {
     return o;
@@ -544,7 +535,15 @@ Outcome validateRecord(
   }
   if (record.hasSources)
   {
-    if (Outcome o = checkSources(record); !o)
+    if (Outcome o =
+          checkSources(record.baseSources, record.baseCellCount, record.cellCount, "BaseSources");
+        !o)
+    {
+      return o;
+    }
+    if (Outcome o = checkSources(record.lostSources, record.hasCodes ? 0 : record.lostSourceSize,
+          record.cellCount, "LostSources");
+        !o)
     {
       return o;
     }
@@ -563,7 +562,6 @@ struct RecordBuilder::Internals
   std::vector<Index> removedNodes;
   std::vector<Index> freedSlots; // step after step
   std::vector<Index> sources;    // current source of each slot, if tracked
-  std::vector<Index> lostSources; // step after step
   ShapeTable shapeTable;
   float largestError = 0.0F;
 };
@@ -628,7 +626,7 @@ void RecordBuilder::appendCells(const Step& step)
   if (record.hasSources)
   {
     inheritSources(
-      step.sources, step.oldCount, step.newCount, step.slots, in.sources, in.lostSources);
+      step.sources, step.oldCount, step.newCount, step.slots, in.sources, record.lostSources);
   }
   record.stepShapes.push_back(in.shapeTable.number(encoded.shape, encoded.size, record));
   in.largestError = std::max(in.largestError, static_cast<float>(step.error));
@@ -682,8 +680,8 @@ Record RecordBuilder::finish(
   {
     std::reverse(in.removedNodes.begin(), in.removedNodes.end());
     std::reverse(record.stepErrors.begin(), record.stepErrors.end());
-    std::reverse(in.lostSources.begin(), in.lostSources.end());
-    Index* lost = in.lostSources.data();
+    std::reverse(record.lostSources.begin(), record.lostSources.end());
+    Index* lost = record.lostSources.data();
     for (Index step = 0; record.hasSources && step < steps; ++step)
     {
       lost = reverseChunk(lost, lostSourceCount(shapeOf(step), record.cornersPerCell));
@@ -764,10 +762,6 @@ Record RecordBuilder::finish(
       record.baseSources[slot] = in.sources[record.cellOrder[slot]];
     }
     release(in.sources);
-    record.lostSourceSize = static_cast<std::int64_t>(in.lostSources.size());
-    record.lostSources =
-      packed(in.lostSources.data(), record.lostSourceSize, record.view().numberBits());
-    release(in.lostSources);
   }
   return record;
 }

@@ -18,7 +18,8 @@
 /// back, in the order in which they come. Step j (0 <= j < stepCount) brings back node
 /// baseNodeCount + j. So the points of a level are the first baseNodeCount + k of all points, its
 /// cells the first of all slots, and a level is handed out by copying prefixes. `nodeOrder` and
-/// `cellOrder` lead back to the original numbers.
+/// `cellOrder` lead back to the original numbers. (With sources the latter is what the steps lead
+/// to: at the finest level each cell shows its own values.)
 ///
 /// **A step** is a form and a patch. The *form* says which corners of the patch's old and new cells
 /// are the same node. The *patch* is the slots of the new cells, then the nodes that no new cell
@@ -37,9 +38,9 @@
 /// cells and new cells). Kept here as forms, which needs a third of the memory of the lists.
 ///
 /// Memory: 16 bytes a removed node (error 4, original numbers 12), and the codes: with two million
-/// triangles 12 to 15 bytes, or 30 with an order that ignores the mesh such as Angle to XY Plane on
-/// a fine grid, where a step has eight new cells. A record with shapes takes 4 bytes for each new
-/// cell, 4 for the shape, and the table of shapes.
+/// triangles 12 to 15 bytes, or 37 with an order that ignores the mesh such as Angle to XY Plane on
+/// a fine grid, where a step has eleven new cells. Sources take as much as they save. A record with
+/// shapes takes 4 bytes for each new cell, 4 for the shape, and the table of shapes.
 
 #ifndef UNDECIMATE_CORE_RECORD_H
 #define UNDECIMATE_CORE_RECORD_H
@@ -68,8 +69,14 @@ constexpr unsigned char kNoLocal = 255;
 
 /// A record as flat arrays in somebody's memory (see the file comment for their meaning).
 ///
-/// Codes: the code of each step from hole_code.h, step after step, and kPackedPadding bytes 0 behind
-/// them. Slots and sources that are lost take numberBits() bits each.
+/// Codes: the code of each step from hole_code.h, step after step, and kPackedPadding bytes 0
+/// behind them. With b = numberBits(), the codes of lost sources are, step after step and for each
+/// old cell that no new cell takes its values from:
+///   1 bit, 0, and b bits    the original cell whose values it shows, or
+///   1 bit, 1, and w bits    the place of an old cell that shows the same: one with heirs, or one
+///                           before this one. Where there is one, this form is used. (w:
+///                           hole_code.h)
+/// and kPackedPadding bytes 0.
 ///
 /// The table of shapes: shape s is the bytes [shapeOffsets[s], shapeOffsets[s + 1]) of `shapes`:
 ///   old, new, extra                  numbers of old cells, new cells, nodes listed in the patch
@@ -92,7 +99,8 @@ struct RecordView
   bool hasSources = false; ///< the source of each cell's values is recorded
 
   const Index* nodeOrder = nullptr;  ///< nodeCount: original number of a node
-  const Index* cellOrder = nullptr;  ///< cellCount: original number of a slot's cell
+  const Index* cellOrder = nullptr;  ///< cellCount unless the steps say it (stepsOrderCells()):
+                                     ///< original number of a slot's cell
   const float* stepErrors = nullptr; ///< stepCount, never increasing: error before step j is undone
   const unsigned char* stepHoles = nullptr; ///< stepCount if hasCodes, see hole_code.h
   const unsigned char* codes = nullptr;     ///< codeSize bytes if hasCodes
@@ -102,11 +110,16 @@ struct RecordView
   const Index* shapeOffsets = nullptr;      ///< shapeCount + 1
   const unsigned char* shapes = nullptr;    ///< shapeOffsets[shapeCount] bytes
   const Index* baseSources = nullptr;       ///< baseCellCount if hasSources: original cell number
-  const unsigned char* lostSources = nullptr; ///< lostSourceSize packed numbers if hasSources:
-                                              ///< original cells, of old cells without heir
+  const Index* lostSources = nullptr;       ///< lostSourceSize if hasSources unless hasCodes:
+                                            ///< original cells, of old cells without heir
+  const unsigned char* lostSourceCodes = nullptr; ///< lostCodeSize bytes if both: the same
   std::int64_t codeSize = 0;
   std::int64_t patchSize = 0;
   std::int64_t lostSourceSize = 0;
+  std::int64_t lostCodeSize = 0;
+
+  /// Whether there is no `cellOrder`: with codes and sources it is the sources at the finest level.
+  bool stepsOrderCells() const { return this->hasCodes && this->hasSources; }
 
   /// Bits of a number of a node or a cell, where numbers are packed.
   int numberBits() const { return bitsBelow(std::max(this->nodeCount, this->cellCount)); }
@@ -124,7 +137,7 @@ struct Record
   bool hasSources = false;
 
   std::vector<Index> nodeOrder;
-  std::vector<Index> cellOrder;
+  std::vector<Index> cellOrder; ///< empty if the steps say it
   std::vector<float> stepErrors;
   std::vector<unsigned char> stepHoles;
   std::vector<unsigned char> codes;
@@ -133,8 +146,8 @@ struct Record
   std::vector<Index> shapeOffsets{ 0 };
   std::vector<unsigned char> shapes;
   std::vector<Index> baseSources;
-  std::vector<unsigned char> lostSources; ///< packed
-  std::int64_t lostSourceSize = 0;        ///< numbers in there
+  std::vector<Index> lostSources;
+  std::vector<unsigned char> lostSourceCodes;
 
   RecordView view() const;
 

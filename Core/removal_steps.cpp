@@ -312,6 +312,7 @@ public:
     if (record.hasSources)
     {
       this->findSources();
+      release(record.cellOrder); // the steps say it
     }
     this->writeSteps();
     release(this->removed_);
@@ -481,45 +482,75 @@ private:
       });
   }
 
+  // Walk the removals and note which sources are lost. They come back in reverse.
   void findSources()
   {
     Record& record = this->record_;
     std::vector<Index> sources(record.cellCount);
     std::iota(sources.begin(), sources.end(), 0);
-    std::vector<Index> lostSources;
-    std::vector<unsigned char> counts; // of lost ones
-    counts.reserve(this->steps_);
+    struct Lost
+    {
+      unsigned char count = 0;
+      unsigned char placeBits = 0;
+    };
+    std::vector<Lost> losses; // of the steps
+    losses.reserve(this->steps_);
+    std::vector<Index> lost; // original triangles, or -1 - place
+    std::int64_t bits = 0;
     for (const Block& block : this->blocks_)
     {
       this->visitSteps(block,
         [&](Index /*step*/, const MeshNode& node)
         {
           const Step step(node);
-          std::array<Index, kMaximumPatchCells> slots;
+          std::array<Index, kMaximumPatchCells> old;
           for (int i = 0; i < step.counts.oldCount; ++i)
           {
-            slots[i] = step.slot(i);
+            old[i] = sources[step.slot(i)];
           }
-          const std::size_t before = lostSources.size();
-          inheritSources(step.sources, step.counts.oldCount, step.counts.newCount, slots.data(),
-            sources, lostSources);
-          counts.push_back(static_cast<unsigned char>(lostSources.size() - before));
+          Lost loss;
+          loss.placeBits = step.counts.placeBits;
+          KnownSources known(
+            step.counts.newCount, step.counts.oldCount, [&step](int i) { return step.sources[i]; });
+          for (int i = 0; i < step.counts.oldCount; ++i)
+          {
+            if (known.has(i))
+            {
+              continue;
+            }
+            const int place = known.placeOf(old[i], old.data());
+            known.add(i);
+            lost.push_back(place < 0 ? old[i] : -1 - place);
+            bits += 1 + (place < 0 ? this->numberBits_ : loss.placeBits);
+            ++loss.count;
+          }
+          for (int i = 0; i < step.counts.newCount; ++i)
+          {
+            sources[step.slot(i)] = old[step.sources[i]];
+          }
+          losses.push_back(loss);
         });
     }
-    // Steps in reverse, each as it is.
-    std::reverse(lostSources.begin(), lostSources.end());
-    auto lost = lostSources.begin();
-    for (auto count = counts.rbegin(); count != counts.rend(); lost += *count++)
-    {
-      std::reverse(lost, lost + *count);
-    }
-    record.lostSourceSize = static_cast<std::int64_t>(lostSources.size());
-    record.lostSources = packed(lostSources.data(), record.lostSourceSize, this->numberBits_);
     record.baseSources.resize(record.baseCellCount);
     for (Index i = 0; i < record.baseCellCount; ++i)
     {
       record.baseSources[i] = sources[record.cellOrder[i]];
     }
+    release(sources);
+    record.lostSourceCodes.resize(static_cast<std::size_t>(packedSize(bits, 1)), 0);
+    BitWriter writer(record.lostSourceCodes.data());
+    auto begin = lost.end();
+    for (auto loss = losses.rbegin(); loss != losses.rend(); ++loss)
+    {
+      begin -= loss->count;
+      for (auto source = begin; source != begin + loss->count; ++source)
+      {
+        writer.add(*source < 0 ? 1 : 0, 1);
+        writer.add(
+          *source < 0 ? -1 - *source : *source, *source < 0 ? loss->placeBits : this->numberBits_);
+      }
+    }
+    writer.finish();
   }
 
   void writeSteps()

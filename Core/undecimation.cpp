@@ -81,7 +81,40 @@ public:
   int source(int newCell) const { return this->sources_[newCell]; }
   Index patch(int i) const { return this->patch_[i]; }
 
+  // The sources of old cells that have no heirs, in `old`, where the others are. How far it is to
+  // those of the next step.
+  int readLost(
+    const RecordView& record, std::int64_t position, int /*numberBits*/, Index* old) const
+  {
+    const KnownSources known = this->heirs();
+    int lost = 0;
+    for (int i = 0; i < this->oldCount; ++i)
+    {
+      if (!known.has(i))
+      {
+        old[i] = record.lostSources[position + lost++];
+      }
+    }
+    return lost;
+  }
+  int lostSize(const Index* /*old*/, int /*numberBits*/) const
+  {
+    return this->oldCount - this->heirs().count();
+  }
+  // Checked by validateRecord().
+  static bool isLostSound(
+    const RecordView& /*record*/, std::int64_t /*position*/, int /*numberBits*/, Index* /*old*/)
+  {
+    return true;
+  }
+  static bool isLostEnd(const RecordView& /*record*/, std::int64_t /*position*/) { return true; }
+
 private:
+  KnownSources heirs() const
+  {
+    return KnownSources(
+      this->newCount, this->oldCount, [this](int i) { return this->sources_[i]; });
+  }
   static const unsigned char* shapeOf(const RecordView& record, Index step)
   {
     return record.shapes + record.shapeOffsets[record.stepShapes[step]];
@@ -117,14 +150,20 @@ public:
 
   CodeStep(const RecordView& record, Index step, std::int64_t position, int numberBits)
     : CodeStep(kHoles[record.stepHoles[step]],
-        HoleCode(kHoles[record.stepHoles[step]], record.codes + position, record.hasSources,
-          numberBits))
+        HoleCode(
+          kHoles[record.stepHoles[step]], record.codes + position, record.hasSources, numberBits))
   {
   }
 
   int oldCount;
   int newCount;
   int extra;
+
+  // Whether nothing but the padding is behind a position.
+  static bool isLostEnd(const RecordView& record, std::int64_t position)
+  {
+    return !record.hasSources || packedSize(position, 1) == record.lostCodeSize;
+  }
 
   static constexpr int firstListed() { return 1; } // only a hole without new cells lists nodes
 
@@ -159,18 +198,105 @@ public:
   int source(int newCell) const { return this->code_.source(newCell); }
   Index patch(int i) const { return this->code_.number(i); }
 
+  int readLost(const RecordView& record, std::int64_t position, int numberBits, Index* old) const
+  {
+    const std::int64_t begin = position;
+    KnownSources known = this->heirs();
+    for (int i = 0; i < this->oldCount; ++i)
+    {
+      if (!known.has(i))
+      {
+        const LostSource lost(record, position, this->placeBits_, numberBits);
+        old[i] = lost.place < 0 ? lost.cell : old[lost.place];
+        known.add(i);
+        position += lost.size;
+      }
+    }
+    return static_cast<int>(position - begin);
+  }
+  int lostSize(const Index* old, int numberBits) const
+  {
+    int size = 0;
+    KnownSources known = this->heirs();
+    for (int i = 0; i < this->oldCount; ++i)
+    {
+      if (!known.has(i))
+      {
+        size += 1 + (known.placeOf(old[i], old) < 0 ? numberBits : this->placeBits_);
+        known.add(i);
+      }
+    }
+    return size;
+  }
+
+  // Whether what readLost() would read is what a writer would have written: then lostSize() is
+  // what readLost() returns.
+  bool isLostSound(
+    const RecordView& record, std::int64_t position, int numberBits, Index* old) const
+  {
+    KnownSources known = this->heirs();
+    for (int i = 0; i < this->oldCount; ++i)
+    {
+      if (known.has(i))
+      {
+        continue;
+      }
+      const std::int64_t end = (record.lostCodeSize - kPackedPadding) * 8;
+      if (position + 1 >= end)
+      {
+        return false;
+      }
+      const LostSource lost(record, position, this->placeBits_, numberBits);
+      position += lost.size;
+      if (position > end ||
+        (lost.place < 0 ? lost.cell >= record.cellCount || known.placeOf(lost.cell, old) >= 0
+                        : lost.place >= this->oldCount || !known.has(lost.place)))
+      {
+        return false;
+      }
+      old[i] = lost.place < 0 ? lost.cell : old[lost.place];
+      known.add(i);
+    }
+    return true;
+  }
+
 private:
+  struct LostSource
+  {
+    int place = -1; // of an old cell that shows the same, if there is one
+    Index cell = kNone;
+    int size = 0; // in bits
+
+    LostSource(const RecordView& record, std::int64_t position, int placeBits, int numberBits)
+    {
+      const bool isPlace = packedBits(record.lostSourceCodes, position, 1) != 0;
+      const int bits = isPlace ? placeBits : numberBits;
+      const auto number =
+        static_cast<Index>(packedBits(record.lostSourceCodes, position + 1, bits));
+      (isPlace ? this->place : this->cell) = number;
+      this->size = 1 + bits;
+    }
+  };
+
+  KnownSources heirs() const
+  {
+    return KnownSources(
+      this->newCount, this->oldCount, [this](int i) { return this->code_.source(i); });
+  }
+
   CodeStep(const HoleCounts& counts, const HoleCode& code)
     : oldCount(counts.oldCount)
     , newCount(counts.newCount)
     , extra(counts.extra)
     , code_(code)
     , ringSize_(counts.ringSize)
+    , placeBits_(counts.placeBits)
   {
   }
 
   HoleCode code_;
   int ringSize_;
+  int placeBits_;
 };
 
 } // namespace
@@ -214,8 +340,7 @@ private:
 
   void fetch() const
   {
-    const Step step(
-      this->cursor_.record_, this->step_, this->position_, this->cursor_.numberBits_);
+    const Step step(this->cursor_.record_, this->step_, this->position_, this->cursor_.numberBits_);
     for (int i = 0; i < step.newCount; ++i)
     {
       prefetch(this->cursor_.cells_.data() + std::ptrdiff_t{ Step::kCorners } * step.patch(i));
@@ -280,10 +405,41 @@ Outcome Undecimation::walkAll(const MonitorShare& walk)
           "' is damaged: step " + std::to_string(this->steps_) +
           " does not fit the cells of its level." };
     }
+    if (this->record_.hasSources && !this->areNextSourcesSound<Step>())
+    {
+      return { Status::InvalidRecord,
+        "Record array 'LostSources' is damaged: step " + std::to_string(this->steps_) +
+          " does not fit the values that its level shows." };
+    }
     scout.advance();
     this->refine<Step>();
   }
+  if (!Step::isLostEnd(this->record_, this->lostPosition_))
+  {
+    return { Status::InvalidRecord, "Record array 'LostSources' is damaged: too long." };
+  }
+  if (!this->showsAllCells())
+  {
+    return { Status::InvalidRecord,
+      "Record array 'LostSources' is damaged: at level 1 not every cell shows its own values." };
+  }
   return {};
+}
+
+// At level 1 each cell has its own source.
+bool Undecimation::showsAllCells() const
+{
+  std::vector<bool> seen(this->sources_.size(), false);
+  for (std::size_t slot = 0; slot < this->sources_.size(); ++slot)
+  {
+    const Index cell = this->sources_[slot];
+    if (seen[cell] || (this->record_.cellOrder && this->record_.cellOrder[slot] != cell))
+    {
+      return false;
+    }
+    seen[cell] = true;
+  }
+  return true;
 }
 
 void Undecimation::standAtBase(const Index* baseCells)
@@ -321,6 +477,27 @@ bool Undecimation::isNextStepSound() const
         (Step::kCorners == kTriangleCorners || (local == kNoLocal) == (node == kNone));
     });
   return sound;
+}
+
+// Whether the sources of the next step are such that coarsen() undoes refine(): new cells with the
+// same source show the same, and those that are lost take the room that coarsen() will give back.
+template <typename Step>
+bool Undecimation::areNextSourcesSound() const
+{
+  const Step step(this->record_, this->steps_, this->position_, this->numberBits_);
+  Index old[kMaximumPatchCells];
+  std::fill_n(old, step.oldCount, kNone);
+  for (int i = 0; i < step.newCount; ++i)
+  {
+    Index& source = old[step.source(i)];
+    const Index shown = this->sources_[step.patch(i)];
+    if (source != kNone && source != shown)
+    {
+      return false;
+    }
+    source = shown;
+  }
+  return step.isLostSound(this->record_, this->lostPosition_, this->numberBits_, old);
 }
 
 bool Undecimation::moveTo(Index steps, Monitor* monitor)
@@ -444,16 +621,15 @@ void Undecimation::refine()
   if (this->record_.hasSources)
   {
     Index old[kMaximumPatchCells];
-    std::fill_n(old, step.oldCount, kNone);
     for (int i = 0; i < step.newCount; ++i)
     {
       old[step.source(i)] = this->sources_[slots[i]];
     }
+    this->lostPosition_ +=
+      step.readLost(this->record_, this->lostPosition_, this->numberBits_, old);
     for (int i = 0; i < step.oldCount; ++i)
     {
-      this->sources_[slots[i]] = old[i] != kNone
-        ? old[i]
-        : packedNumber(this->record_.lostSources, this->lostPosition_++, this->numberBits_);
+      this->sources_[slots[i]] = old[i];
     }
   }
   this->position_ += Step::size(this->record_, this->steps_, this->numberBits_);
@@ -482,17 +658,15 @@ void Undecimation::coarsen()
   if (this->record_.hasSources)
   {
     Index old[kMaximumPatchCells];
-    std::uint64_t heirs = 0;
     for (int i = 0; i < step.oldCount; ++i)
     {
       old[i] = this->sources_[slots[i]];
     }
+    this->lostPosition_ -= step.lostSize(old, this->numberBits_);
     for (int i = 0; i < step.newCount; ++i)
     {
-      heirs |= std::uint64_t{ 1 } << step.source(i);
       this->sources_[slots[i]] = old[step.source(i)];
     }
-    this->lostPosition_ -= step.oldCount - countBits(heirs);
   }
 }
 

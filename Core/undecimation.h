@@ -61,21 +61,24 @@ public:
   /// triangle among quads; valid until the next move.
   const Index* cells() const { return this->cells_.data(); }
 
-  /// Original number of the cell whose values each cell shows; null if the record has no sources
-  /// (then a cell of slot s shows the values of original cell cellOrder[s]).
-  const Index* sources() const
+  /// Original number of the cell whose values each cell of the current level shows; at level 1 its
+  /// own. Valid until the next move.
+  const Index* shownCells() const
   {
-    return this->record_.hasSources ? this->sources_.data() : nullptr;
+    return this->record_.hasSources ? this->sources_.data() : this->record_.cellOrder;
   }
 
   const RecordView& record() const { return this->record_; }
 
 private:
+  bool showsAllCells() const;
   Outcome check(const RecordView& record, const Index* baseCells, const MonitorShare& progress);
   void walkTo(Index goal);
   void standAtBase(const Index* baseCells);
   template <typename Step>
   bool isNextStepSound() const;
+  template <typename Step>
+  bool areNextSourcesSound() const;
   template <typename Step>
   class Scout;
   template <typename Step>
@@ -96,7 +99,7 @@ private:
   Index cellCount_ = 0;
   int numberBits_ = 0;            // of record_
   std::int64_t position_ = 0;     // of step steps_ in record_.codes, or in record_.patches
-  std::int64_t lostPosition_ = 0; // in record_.lostSources
+  std::int64_t lostPosition_ = 0; // in record_.lostSources, or bit of record_.lostSourceCodes
 };
 
 } // namespace undecimate

@@ -247,8 +247,7 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::prefix(
     { return join(coarseArray, base, removed, back, &memory); },
     [&](vtkAbstractArray* original, vtkAbstractArray* described)
     {
-      return gather(original, described, leading,
-        this->cursor_.sources() ? this->cursor_.sources() : record.view.cellOrder,
+      return gather(original, described, leading, this->cursor_.shownCells(),
         this->cursor_.cellCount(), &memory);
     });
   return done ? mesh : nullptr;
@@ -270,10 +269,11 @@ vtkSmartPointer<vtkPolyData> UndecimatedMesh::original(vtkPolyData* coarse, Moni
     const std::size_t size = view.cornersPerCell;
     std::vector<Index> corners(size * view.cellCount);
     const Index* cells = this->cursor_.cells();
+    const Index* order = this->cursor_.shownCells();
     for (Index slot = 0; slot < view.cellCount; ++slot)
     {
       std::transform(cells + size * slot, cells + size * (slot + 1),
-        corners.data() + size * view.cellOrder[slot],
+        corners.data() + size * order[slot],
         [&view](Index node) { return node == kNone ? kNone : view.nodeOrder[node]; });
     }
     faces.cells = this->makeCells(corners.data(), nullptr, faces.quads);

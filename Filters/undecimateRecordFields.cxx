@@ -198,15 +198,6 @@ public:
 
   const std::string& problem() const { return this->problem_; }
 
-  /// The first problem counts.
-  void fail(const std::string& what)
-  {
-    if (this->problem_.empty())
-    {
-      this->problem_ = damaged(what);
-    }
-  }
-
   /// A flat array of numbers of the size and kind of Value; null if size is 0 or on a problem.
   template <class Value>
   const Value* read(const char* name, std::int64_t size)
@@ -273,6 +264,14 @@ private:
       array = nullptr;
     }
     return array;
+  }
+
+  void fail(const std::string& what)
+  {
+    if (this->problem_.empty())
+    {
+      this->problem_ = damaged(what);
+    }
   }
 
   vtkFieldData* fields_;
@@ -471,37 +470,6 @@ std::string compareMesh(
   return text;
 }
 
-// Of version 3 as they are; earlier ones have them in 32 bits each.
-void readLostSources(FieldReader& reader, RecordFields& record)
-{
-  constexpr const char* name = "LostSources";
-  RecordView& view = record.view;
-  const std::int64_t size = view.hasSources ? view.lostSourceSize : 0;
-  const int bits = view.numberBits();
-  if (size > std::int64_t{ kMaximumPatchCells } * view.stepCount)
-  {
-    reader.fail("header entry " + std::to_string(kLostSourceSize) + " is " + std::to_string(size));
-    return;
-  }
-  if (view.hasCodes)
-  {
-    view.lostSources =
-      reader.read<unsigned char>(name, view.hasSources ? packedSize(size, bits) : 0);
-    return;
-  }
-  if (const Index* sources = reader.read<Index>(name, size))
-  {
-    const auto known = [&view](Index source) { return source >= 0 && source < view.cellCount; };
-    if (!std::all_of(sources, sources + size, known))
-    {
-      reader.fail("array '" + kPrefix + name + "' has the number of a cell that does not exist");
-      return;
-    }
-    record.lostSources = packed(sources, size, bits);
-    view.lostSources = record.lostSources.data();
-  }
-}
-
 void readArrays(FieldReader& reader, RecordFields& record)
 {
   const std::int64_t* header = record.header;
@@ -515,10 +483,10 @@ void readArrays(FieldReader& reader, RecordFields& record)
   view.patchSize = header[kPatchSize];
   view.cornersPerCell = static_cast<int>(header[kCornersPerCell]);
   view.hasSources = header[kHasSources] != 0;
-  view.lostSourceSize = header[kLostSourceSize];
 
   view.nodeOrder = reader.read<Index>("NodeOrder", view.nodeCount);
-  view.cellOrder = reader.read<Index>("CellOrder", view.cellCount);
+  view.cellOrder =
+    reader.read<Index>("CellOrder", view.stepsOrderCells() ? Index{ 0 } : view.cellCount);
   view.stepErrors = reader.read<float>("StepErrors", view.stepCount);
   if (view.hasCodes)
   {
@@ -540,7 +508,17 @@ void readArrays(FieldReader& reader, RecordFields& record)
   }
   view.baseSources =
     reader.read<Index>("BaseSources", view.hasSources ? view.baseCellCount : Index{ 0 });
-  readLostSources(reader, record);
+  const std::int64_t lost = view.hasSources ? header[kLostSourceSize] : 0;
+  if (view.hasCodes)
+  {
+    view.lostCodeSize = lost;
+    view.lostSourceCodes = reader.read<unsigned char>("LostSources", lost);
+  }
+  else
+  {
+    view.lostSourceSize = lost;
+    view.lostSources = reader.read<Index>("LostSources", lost);
+  }
 }
 
 void readValues(vtkPolyData* mesh, FieldReader& reader, RecordFields& record)
@@ -610,7 +588,8 @@ RecordArrays::RecordArrays(Record& record)
   header[kFormCount] = record.hasCodes ? static_cast<std::int64_t>(record.codes.size())
                                        : static_cast<std::int64_t>(record.shapeOffsets.size()) - 1;
   header[kPatchSize] = static_cast<std::int64_t>(record.patches.size());
-  header[kLostSourceSize] = record.lostSourceSize;
+  header[kLostSourceSize] = static_cast<std::int64_t>(
+    record.hasCodes ? record.lostSourceCodes.size() : record.lostSources.size());
   header[kCornersPerCell] = record.cornersPerCell;
   header[kHasSources] = record.hasSources;
   vtkFieldData* fields = this->fields_;
@@ -630,7 +609,14 @@ RecordArrays::RecordArrays(Record& record)
     write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
   }
   write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
-  write<vtkUnsignedCharArray>(fields, "LostSources", record.lostSources);
+  if (record.hasCodes)
+  {
+    write<vtkUnsignedCharArray>(fields, "LostSources", record.lostSourceCodes);
+  }
+  else
+  {
+    write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
+  }
   for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = fields->GetAbstractArray(i);
@@ -690,6 +676,7 @@ bool shareRecordArrays(const RecordFields& a, const RecordFields& b)
     v.stepErrors == w.stepErrors && v.patches == w.patches && v.stepHoles == w.stepHoles &&
     v.codes == w.codes && v.stepShapes == w.stepShapes && v.shapeOffsets == w.shapeOffsets &&
     v.shapes == w.shapes && v.baseSources == w.baseSources && v.lostSources == w.lostSources &&
+    v.lostSourceCodes == w.lostSourceCodes &&
     a.header[kCornersPerCell] == b.header[kCornersPerCell] && a.keptTimes == b.keptTimes &&
     a.baseCells == b.baseCells;
 }

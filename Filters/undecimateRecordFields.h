@@ -12,7 +12,7 @@
 /// | ------------------ | --------------- | ------ |
 /// | .Header            | int64           | see HeaderField |
 /// | .NodeOrder         | int32           | a node: its original number |
-/// | .CellOrder         | int32           | a triangle slot: its original number among the triangles |
+/// | .CellOrder         | int32           | a triangle slot: its original number among the triangles (version 3: without sources only) |
 /// | .StepErrors        | float           | a step: error before it is undone |
 /// | .StepHoles         | unsigned char   | a step: its hole (version 3, as .HoleCodes) |
 /// | .HoleCodes         | unsigned char   | the codes of the steps |
@@ -21,7 +21,7 @@
 /// | .ShapeOffsets      | int32           | where each shape starts in .Shapes, and the end |
 /// | .Shapes            | unsigned char   | the shapes |
 /// | .BaseSources       | int32           | a triangle of the coarse mesh: original triangle shown |
-/// | .LostSources       | unsigned char   | original triangles of old cells without heir, packed (version 1: int32) |
+/// | .LostSources       | unsigned char   | codes of what old cells without heir show (version 1: int32, original triangles) |
 /// | .Points            | as the points   | x, y, z of a removed node |
 /// | .PointData.i       | as the array    | values of point array i at a removed node |
 /// | .CellData.i        | as the array    | all values of cell array i, in original order |
@@ -67,7 +67,7 @@ enum HeaderField
   kBaseCellCount,       ///< triangles (and quads) of level 0
   kFormCount,           ///< shapes; in version 3 bytes of .HoleCodes
   kPatchSize,           ///< values of .Patches, in version 3 0
-  kLostSourceSize,      ///< numbers in .LostSources
+  kLostSourceSize,      ///< values of .LostSources
   kCornersPerCell,      ///< 3, in version 2 also 4
   kHasSources,          ///< 1 if sources are recorded (there is cell data)
   kVertCount,           ///< vertex cells, the same at all levels
@@ -143,7 +143,6 @@ struct RecordFields
   std::vector<int> cellArrays;         ///< number of each cell array in the mesh that was read
   std::vector<ArrayPointer> cellData;  ///< its values at level 1; null if there are no cells
   std::vector<ArrayPointer> kept;      ///< the arrays that `view` points into
-  std::vector<unsigned char> lostSources;  ///< the same, of a version that does not pack them
   std::vector<vtkMTimeType> keptTimes; ///< of those of the record itself
 };
 

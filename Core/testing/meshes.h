@@ -706,7 +706,7 @@ inline Triangles originalNumbers(const Undecimation& cursor)
   return triangles;
 }
 
-/// At level 1 each slot has the cell that cellOrder names, corner by corner.
+/// At level 1 each slot has the cell of which it shows the values, corner by corner.
 inline AssertionResult isOriginal(const Undecimation& cursor, const Mesh& mesh)
 {
   if (cursor.nodeCount() != mesh.nodeCount() || cursor.cellCount() != mesh.triangleCount())
@@ -717,7 +717,7 @@ inline AssertionResult isOriginal(const Undecimation& cursor, const Mesh& mesh)
   const Triangles triangles = originalNumbers(cursor);
   for (Index slot = 0; slot < cursor.cellCount(); ++slot)
   {
-    const Index cell = cursor.record().cellOrder[slot];
+    const Index cell = cursor.shownCells()[slot];
     for (int c = 0; c < 3; ++c)
     {
       if (triangles[3 * slot + c] != mesh.triangles[3 * cell + c])

@@ -47,6 +47,7 @@ inline Record withShapes(
   cursor.moveTo(cursor.stepCount());
   const int bits = record.view().numberBits();
   std::size_t end = record.codes.size() - kPackedPadding;
+  const std::vector<Index> cellOrder(cursor.shownCells(), cursor.shownCells() + record.cellCount);
   while (cursor.steps() > 0)
   {
     const Index place = cursor.steps() - 1;
@@ -94,7 +95,7 @@ inline Record withShapes(
     }
     for (Index& slot : slots)
     {
-      slot = record.cellOrder[slot];
+      slot = cellOrder[slot];
     }
     step.ring = ring.data();
     step.ringSize = static_cast<int>(ring.size());
@@ -110,7 +111,7 @@ inline Record withShapes(
   std::vector<Index> slotOf(record.cellCount);
   for (Index slot = 0; slot < record.cellCount; ++slot)
   {
-    slotOf[record.cellOrder[slot]] = slot;
+    slotOf[cellOrder[slot]] = slot;
   }
   return builder.finish(
     [&](Index cell, Index* corners)

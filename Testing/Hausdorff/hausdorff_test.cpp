@@ -394,8 +394,8 @@ TEST_P(HausdorffTest, LevelOneIsTheInput)
   const std::vector<Index> current = currentTriangles(d.cursor);
   for (std::size_t slot = 0; slot < current.size() / 3; ++slot)
   {
-    std::copy_n(&current[3 * slot], 3,
-      &triangles[3 * static_cast<std::size_t>(d.cursor.record().cellOrder[slot])]);
+    std::copy_n(
+      &current[3 * slot], 3, &triangles[3 * static_cast<std::size_t>(d.cursor.shownCells()[slot])]);
   }
   EXPECT_EQ(triangles, d.mesh.triangles);
   EXPECT_EQ(d.cursor.error(), 0.0);
