@@ -299,6 +299,12 @@ public:
         }
       });
     this->topology_.freeTriangles();
+    // Room for both orders at once: asking for its pages takes as long as writing them.
+    const std::function<void()> rooms[] = {
+      [&record] { record.cellOrder.resize(record.cellCount); },
+      [&record] { record.nodeOrder.resize(record.nodeCount); },
+    };
+    this->run(2, [&rooms](Index i) { rooms[i](); });
     this->invert(this->slots_, record.cellOrder);
     this->numberNodes();
     this->forBlocks(record.baseCellCount,
@@ -471,7 +477,6 @@ private:
 
   void invert(const LargeArray<Index>& numbers, std::vector<Index>& order)
   {
-    order.resize(numbers.size());
     this->forBlocks(static_cast<Index>(numbers.size()),
       [&](Index begin, Index end)
       {
@@ -556,9 +561,12 @@ private:
   void writeSteps()
   {
     Record& record = this->record_;
-    record.stepHoles.resize(this->steps_);
-    record.stepErrors.resize(this->steps_);
-    record.codes.resize(this->blocks_.back().codes + kPackedPadding, 0);
+    const std::function<void()> rooms[] = {
+      [&] { record.codes.resize(this->blocks_.back().codes + kPackedPadding, 0); },
+      [&] { record.stepErrors.resize(this->steps_); },
+      [&] { record.stepHoles.resize(this->steps_); },
+    };
+    this->run(3, [&rooms](Index i) { rooms[i](); });
     this->run(static_cast<Index>(this->blocks_.size()), [this](Index i) { this->writeBlock(i); });
   }
 

@@ -423,7 +423,7 @@ ArrayPointer share(vtkAbstractArray* values, vtkAbstractArray* like)
 }
 
 ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType leading,
-  const Index* numbers, vtkIdType count, ArrayMemory* memory)
+  const Index* numbers, vtkIdType count, ArrayMemory* memory, Threads* threads)
 {
   ArrayPointer to = newLike(like, leading + count, memory);
   if (isBlock(from) && isBlock(to))
@@ -433,7 +433,14 @@ ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType le
     {
       std::memcpy(bytes(to), bytes(from), size * leading);
     }
-    gatherBlock(bytes(to) + size * leading, bytes(from) + size * leading, size, numbers, count);
+    const char* source = bytes(from) + size * leading;
+    char* goal = bytes(to) + size * leading;
+    doInShares(threads, static_cast<Index>(count),
+      [=](const Share& share)
+      {
+        gatherBlock(
+          goal + size * share.begin, source, size, numbers + share.begin, share.end - share.begin);
+      });
     return to;
   }
   copyTuples(to, {}, from, {}, leading);

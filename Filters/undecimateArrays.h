@@ -10,6 +10,7 @@
 #ifndef undecimateArrays_h
 #define undecimateArrays_h
 
+#include "threads.h"
 #include "types.h"
 
 #include "vtkAbstractArray.h"
@@ -43,8 +44,9 @@ ArrayPointer share(vtkAbstractArray* values, vtkAbstractArray* like);
 
 /// The first `leading` tuples of `from`, then tuple leading + numbers[i] for each i < count;
 /// described by `like`. `memory` as for newLike().
+/// @param threads to share the work out among, or null
 ArrayPointer gather(vtkAbstractArray* from, vtkAbstractArray* like, vtkIdType leading,
-  const Index* numbers, vtkIdType count, ArrayMemory* memory = nullptr);
+  const Index* numbers, vtkIdType count, ArrayMemory* memory = nullptr, Threads* threads = nullptr);
 
 /// The first `baseCount` tuples of `base`, then the first `restCount` tuples of `rest`.
 /// `rest` may be null if restCount is 0. Described by `base`. `memory` as for newLike().

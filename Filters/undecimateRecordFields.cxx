@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <new>
 #include <optional>
@@ -65,9 +66,25 @@ std::int64_t cellsFingerprint(vtkPolyData* mesh)
   return signedBits(print.value());
 }
 
-// The vector becomes a field data array; its memory is freed.
+// Work on arrays, each of them for itself.
+using Jobs = std::vector<std::function<void()>>;
+
+void run(const Jobs& jobs, Threads* threads)
+{
+  if (threads)
+  {
+    threads->run(static_cast<Index>(jobs.size()), [&jobs](Index i, int /*thread*/) { jobs[i](); });
+    return;
+  }
+  for (const auto& job : jobs)
+  {
+    job();
+  }
+}
+
+// A new field data array that is to have the values of a vector: the job moves them there.
 template <class ArrayType, class Value>
-void write(vtkFieldData* fields, const char* name, std::vector<Value>& values)
+void planToWrite(vtkFieldData* fields, const char* name, std::vector<Value>& values, Jobs& jobs)
 {
   static_assert(sizeof(Value) == sizeof(typename ArrayType::ValueType), "same layout");
   if (values.empty())
@@ -82,10 +99,23 @@ void write(vtkFieldData* fields, const char* name, std::vector<Value>& values)
   {
     throw std::bad_alloc();
   }
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  std::vector<Value>().swap(values);
   array->GetInformation(); // see describe() in undecimateArrays.cxx
   fields->AddArray(array);
+  jobs.emplace_back(
+    [&values, to = array->GetPointer(0)]
+    {
+      std::copy(values.begin(), values.end(), to);
+      std::vector<Value>().swap(values);
+    });
+}
+
+// The vector becomes a field data array; its memory is freed.
+template <class ArrayType, class Value>
+void write(vtkFieldData* fields, const char* name, std::vector<Value>& values)
+{
+  Jobs jobs;
+  planToWrite<ArrayType>(fields, name, values, jobs);
+  run(jobs, nullptr);
 }
 
 void write(vtkFieldData* fields, const std::string& name, const ArrayPointer& array)
@@ -118,19 +148,47 @@ void writeArrayFingerprints(vtkPolyData* coarse, int pointArrays, int cellArrays
 }
 
 // @param numbers original numbers of the removed nodes
-void writeNodalValues(
-  const Index* numbers, vtkIdType removed, vtkPolyData* mesh, vtkFieldData* fields)
+void writeNodalValues(const Index* numbers, vtkIdType removed, vtkPolyData* mesh,
+  vtkFieldData* fields, Threads* threads)
 {
   if (removed == 0)
   {
     return;
   }
-  write(fields, "Points", gather(pointsOf(mesh), pointsOf(mesh), 0, numbers, removed));
+  write(fields, "Points",
+    gather(pointsOf(mesh), pointsOf(mesh), 0, numbers, removed, nullptr, threads));
   vtkPointData* data = mesh->GetPointData();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = data->GetAbstractArray(i);
-    write(fields, indexed("PointData.", i), gather(array, array, 0, numbers, removed));
+    write(fields, indexed("PointData.", i),
+      gather(array, array, 0, numbers, removed, nullptr, threads));
+  }
+}
+
+// Add the fingerprints of a record's arrays that are not known yet and lie in memory as they are.
+void findFingerprints(vtkFieldData* fields, KnownFingerprints& known, Threads* threads)
+{
+  std::vector<vtkAbstractArray*> arrays;
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = fields->GetArray(i);
+    if (array && isRecordArray(array->GetName()) && array->HasStandardMemoryLayout() &&
+      known.find(array) == known.end())
+    {
+      arrays.push_back(array);
+    }
+  }
+  std::vector<std::int64_t> prints(arrays.size());
+  Jobs jobs;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    jobs.emplace_back([&, i] { prints[i] = signedBits(fingerprint(arrays[i])); });
+  }
+  run(jobs, threads);
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    known[arrays[i]] = { arrays[i]->GetMTime(), prints[i] };
   }
 }
 
@@ -576,7 +634,7 @@ std::int64_t recordChecksum(
   return *checksum(header, fields, MonitorShare(nullptr), known);
 }
 
-RecordArrays::RecordArrays(Record& record)
+RecordArrays::RecordArrays(Record& record, Threads* threads)
   : fields_(vtkSmartPointer<vtkFieldData>::New())
 {
   std::int64_t* header = this->header_;
@@ -593,38 +651,37 @@ RecordArrays::RecordArrays(Record& record)
   header[kCornersPerCell] = record.cornersPerCell;
   header[kHasSources] = record.hasSources;
   vtkFieldData* fields = this->fields_;
-  write<vtkTypeInt32Array>(fields, "NodeOrder", record.nodeOrder);
-  write<vtkTypeInt32Array>(fields, "CellOrder", record.cellOrder);
-  write<vtkFloatArray>(fields, "StepErrors", record.stepErrors);
+  Jobs jobs;
+  planToWrite<vtkTypeInt32Array>(fields, "NodeOrder", record.nodeOrder, jobs);
+  planToWrite<vtkTypeInt32Array>(fields, "CellOrder", record.cellOrder, jobs);
+  planToWrite<vtkFloatArray>(fields, "StepErrors", record.stepErrors, jobs);
   if (record.hasCodes)
   {
-    write<vtkUnsignedCharArray>(fields, "StepHoles", record.stepHoles);
-    write<vtkUnsignedCharArray>(fields, "HoleCodes", record.codes);
+    planToWrite<vtkUnsignedCharArray>(fields, "StepHoles", record.stepHoles, jobs);
+    planToWrite<vtkUnsignedCharArray>(fields, "HoleCodes", record.codes, jobs);
   }
   else
   {
-    write<vtkTypeInt32Array>(fields, "Patches", record.patches);
-    write<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes);
-    write<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets);
-    write<vtkUnsignedCharArray>(fields, "Shapes", record.shapes);
+    planToWrite<vtkTypeInt32Array>(fields, "Patches", record.patches, jobs);
+    planToWrite<vtkTypeInt32Array>(fields, "StepShapes", record.stepShapes, jobs);
+    planToWrite<vtkTypeInt32Array>(fields, "ShapeOffsets", record.shapeOffsets, jobs);
+    planToWrite<vtkUnsignedCharArray>(fields, "Shapes", record.shapes, jobs);
   }
-  write<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources);
+  planToWrite<vtkTypeInt32Array>(fields, "BaseSources", record.baseSources, jobs);
   if (record.hasCodes)
   {
-    write<vtkUnsignedCharArray>(fields, "LostSources", record.lostSourceCodes);
+    planToWrite<vtkUnsignedCharArray>(fields, "LostSources", record.lostSourceCodes, jobs);
   }
   else
   {
-    write<vtkTypeInt32Array>(fields, "LostSources", record.lostSources);
+    planToWrite<vtkTypeInt32Array>(fields, "LostSources", record.lostSources, jobs);
   }
-  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
-  {
-    vtkAbstractArray* array = fields->GetAbstractArray(i);
-    this->known_[array] = { array->GetMTime(), signedBits(fingerprint(array)) };
-  }
+  run(jobs, threads);
+  findFingerprints(fields, this->known_, threads);
 }
 
-void RecordArrays::addTo(vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds) const
+void RecordArrays::addTo(
+  vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds, Threads* threads) const
 {
   vtkFieldData* fields = coarse->GetFieldData();
   const int pointArrays = mesh->GetPointData()->GetNumberOfArrays();
@@ -646,7 +703,7 @@ void RecordArrays::addTo(vtkPolyData* mesh, vtkPolyData* coarse, bool hasOrigina
   if (auto* order =
         vtkTypeInt32Array::SafeDownCast(this->fields_->GetAbstractArray("Undecimation.NodeOrder")))
   {
-    writeNodalValues(order->GetPointer(header[kBaseNodeCount]), removed, mesh, fields);
+    writeNodalValues(order->GetPointer(header[kBaseNodeCount]), removed, mesh, fields, threads);
   }
   for (int i = 0; i < cellArrays; ++i)
   {
@@ -658,13 +715,16 @@ void RecordArrays::addTo(vtkPolyData* mesh, vtkPolyData* coarse, bool hasOrigina
   {
     fields->AddArray(this->fields_->GetAbstractArray(i));
   }
-  header[kChecksum] = recordChecksum(header.data(), fields, &this->known_);
+  KnownFingerprints known = this->known_;
+  findFingerprints(fields, known, threads);
+  header[kChecksum] = recordChecksum(header.data(), fields, &known);
   write<vtkTypeInt64Array>(fields, "Header", header);
 }
 
-void writeRecord(Record& record, vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds)
+void writeRecord(Record& record, vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds,
+  Threads* threads)
 {
-  RecordArrays(record).addTo(mesh, coarse, hasOriginalPointIds);
+  RecordArrays(record, threads).addTo(mesh, coarse, hasOriginalPointIds, threads);
 }
 
 bool shareRecordArrays(const RecordFields& a, const RecordFields& b)

@@ -113,14 +113,17 @@ public:
   RecordArrays() = default;
 
   /// @param record its arrays are freed as they are written
-  explicit RecordArrays(Record& record);
+  /// @param threads to share the work out among, or null
+  explicit RecordArrays(Record& record, Threads* threads = nullptr);
 
   /// Add the record to the field data of a coarse mesh.
   /// @param mesh the input of the decimation
   /// @param coarse its output: points, cells, point and cell data, complete
   /// @param hasOriginalPointIds the last point array of `coarse` is kOriginalPointIds, added to
   /// mesh's
-  void addTo(vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds) const;
+  /// @param threads as above
+  void addTo(vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds,
+    Threads* threads = nullptr) const;
 
 private:
   std::int64_t header_[kHeaderSize] = {};
@@ -128,8 +131,10 @@ private:
   KnownFingerprints known_;
 };
 
-/// RecordArrays(record).addTo(mesh, coarse, hasOriginalPointIds), for a mesh without time.
-void writeRecord(Record& record, vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds);
+/// RecordArrays(record, threads).addTo(mesh, coarse, hasOriginalPointIds, threads), for a mesh
+/// without time.
+void writeRecord(Record& record, vtkPolyData* mesh, vtkPolyData* coarse, bool hasOriginalPointIds,
+  Threads* threads = nullptr);
 
 /// A record as it was found in the field data of a mesh. Keeps the arrays alive.
 struct RecordFields

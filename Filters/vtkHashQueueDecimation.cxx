@@ -16,6 +16,7 @@
 #include "vtkPolyData.h"
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -124,7 +125,9 @@ bool vtkHashQueueDecimation::MakeOutputs(
       << record.baseNodeCount << " of " << record.nodeCount << " nodes and " << record.baseCellCount
       << " of " << record.cellCount << " triangles are left." << describeKept(result));
   }
-  writeRecord(record, mesh, output, this->OriginalPointIds != 0);
+  const auto threads =
+    this->Parallel ? std::make_unique<Threads>(this->GetThreadsToUse()) : nullptr;
+  writeRecord(record, mesh, output, this->OriginalPointIds != 0, threads.get());
   return true;
 }
 
