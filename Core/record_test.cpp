@@ -224,7 +224,7 @@ TEST(Record, SizeIsBounded)
       const Decimated decimated(*mesh, options);
       const Record& record = decimated.result.record;
       ASSERT_GT(decimated.steps(), 5000);
-      const double bound = criterion == Criterion::AngleToXYPlane ? 55.0 : 40.0;
+      const double bound = criterion == Criterion::AngleToXYPlane ? 45.0 : 31.0;
       EXPECT_LE(record.byteSize(), bound * decimated.steps());
       EXPECT_EQ(record.byteSize(),
         4 *
