@@ -122,7 +122,7 @@ bool sameMesh(const Mesh& mesh, const undecimate::Undecimation& cursor)
     for (int corner = 0; corner < 3; ++corner)
     {
       if (record.nodeOrder[cursor.cells()[3 * slot + corner]] !=
-        mesh.triangles[3 * static_cast<std::size_t>(record.cellOrder[slot]) + corner])
+        mesh.triangles[3 * static_cast<std::size_t>(cursor.shownCells()[slot]) + corner])
       {
         return false;
       }

@@ -29,8 +29,7 @@ from rivals import poly_data
 CRITERIA = ["Deviation", "ScalarDifference", "Quadric"]
 GOAL, NEAR = 1.7, 1.03
 TOUCHED = 2**30  # bytes
-KEEP_MEMORY = ("glibc.malloc.mmap_max=0:glibc.malloc.mmap_threshold=4294967296:glibc.malloc.trim_threshold=17179869184:"
-               "glibc.malloc.arena_max=1")
+KEEP_MEMORY = "glibc.malloc.mmap_max=0:glibc.malloc.trim_threshold=17179869184"
 
 
 def worker(file, criterion, triangles, threads):

@@ -22,7 +22,7 @@
 /// triangle i. The other old triangles have the slots behind the end of the coarser level.
 ///
 /// Memory: 1 + (2 n + (w + b) (n - 2)) / 8 bytes a step; with two million triangles 12 to 15 with
-/// five or six neighbours, 30 with ten.
+/// five or six neighbours, 29 with ten.
 
 #ifndef UNDECIMATE_CORE_HOLE_CODE_H
 #define UNDECIMATE_CORE_HOLE_CODE_H

@@ -14,7 +14,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace undecimate
 {
@@ -33,10 +32,10 @@ constexpr int bitsBelow(Index count)
   return bits;
 }
 
-/// Bytes of so many numbers, with the padding.
-constexpr std::int64_t packedSize(std::int64_t count, int bits)
+/// Bytes of so many bits, with the padding.
+constexpr std::int64_t packedSize(std::int64_t bits)
 {
-  return (count * bits + 7) / 8 + kPackedPadding;
+  return (bits + 7) / 8 + kPackedPadding;
 }
 
 /// The number of `width` bits (1 to 32) that begins at a bit.
@@ -48,12 +47,6 @@ inline std::uint32_t packedBits(const unsigned char* bytes, std::int64_t bit, in
     std::uint64_t{ b[2] } << 16 | std::uint64_t{ b[3] } << 24 | std::uint64_t{ b[4] } << 32 |
     std::uint64_t{ b[5] } << 40 | std::uint64_t{ b[6] } << 48 | std::uint64_t{ b[7] } << 56;
   return static_cast<std::uint32_t>(word >> (bit & 7) & ((std::uint64_t{ 1 } << width) - 1));
-}
-
-/// Number i of a row.
-inline Index packedNumber(const unsigned char* bytes, std::int64_t i, int width)
-{
-  return static_cast<Index>(packedBits(bytes, i * width, width));
 }
 
 /// Writes bits from a byte on; nothing behind the last one.
@@ -90,19 +83,6 @@ private:
   std::uint64_t word_ = 0;
   int used_ = 0;
 };
-
-/// A row of numbers from `count` values, each in [0, 2^bits), with the padding.
-inline std::vector<unsigned char> packed(const Index* values, std::int64_t count, int bits)
-{
-  std::vector<unsigned char> bytes(static_cast<std::size_t>(packedSize(count, bits)), 0);
-  BitWriter writer(bytes.data());
-  for (std::int64_t i = 0; i < count; ++i)
-  {
-    writer.add(static_cast<std::uint32_t>(values[i]), bits);
-  }
-  writer.finish();
-  return bytes;
-}
 
 } // namespace undecimate
 

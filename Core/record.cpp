@@ -3,7 +3,6 @@
 
 #include "record.h"
 
-#include "compiler.h"
 #include "hole_code.h"
 #include "large_array.h"
 #include "record_shapes.h"
@@ -21,6 +20,9 @@ namespace undecimate
 
 namespace
 {
+
+// Their bits can be counted.
+constexpr std::int64_t kMostLostCodes = std::numeric_limits<std::int64_t>::max() / 16;
 
 // Whether only the last corner of a cell is empty, if any.
 template <typename Corner>
@@ -494,7 +496,9 @@ Outcome validateRecord(
     record.lostSourceSize < 0 || record.baseCellCount > record.cellCount ||
     record.stepCount != record.nodeCount - record.baseNodeCount || record.stepCount < 0 ||
     record.cornersPerCell < kTriangleCorners || record.cornersPerCell > kMostCorners ||
-    (record.hasCodes && (record.cornersPerCell != kTriangleCorners || record.codeSize < 1)))
+    (record.hasCodes && (record.cornersPerCell != kTriangleCorners || record.codeSize < 1)) ||
+    (record.stepsOrderCells() &&
+      (record.lostCodeSize < kPackedPadding || record.lostCodeSize > kMostLostCodes)))
   {
     return { Status::InvalidRecord, "The record's counts contradict each other." };
   }

@@ -18,8 +18,8 @@
 /// back, in the order in which they come. Step j (0 <= j < stepCount) brings back node
 /// baseNodeCount + j. So the points of a level are the first baseNodeCount + k of all points, its
 /// cells the first of all slots, and a level is handed out by copying prefixes. `nodeOrder` and
-/// `cellOrder` lead back to the original numbers. (With sources the latter is what the steps lead
-/// to: at the finest level each cell shows its own values.)
+/// `cellOrder` lead back to the original numbers. (With codes and sources the latter is what the
+/// steps lead to: at the finest level each cell shows its own values.)
 ///
 /// **A step** is a form and a patch. The *form* says which corners of the patch's old and new cells
 /// are the same node. The *patch* is the slots of the new cells, then the nodes that no new cell
@@ -38,7 +38,7 @@
 /// cells and new cells). Kept here as forms, which needs a third of the memory of the lists.
 ///
 /// Memory: 16 bytes a removed node (error 4, original numbers 12), and the codes: with two million
-/// triangles 12 to 15 bytes, or 37 with an order that ignores the mesh such as Angle to XY Plane on
+/// triangles 12 to 15 bytes, or 38 with an order that ignores the mesh such as Angle to XY Plane on
 /// a fine grid, where a step has eleven new cells. Sources take as much as they save. A record with
 /// shapes takes 4 bytes for each new cell, 4 for the shape, and the table of shapes.
 
@@ -156,7 +156,8 @@ struct Record
 };
 
 /// Check that a record can be walked without ever leaving its arrays or those of the mesh, whatever
-/// its bytes are: counts, ranges, forms, order of the errors, permutations.
+/// its bytes are: counts, ranges, forms, order of the errors, permutations. Not the codes of lost
+/// sources, nor whether the steps fit together: these show on the way (Undecimation::open()).
 /// @param baseCells cornersPerCell * baseCellCount node numbers in record order
 /// @param progress of this call, and cancel
 /// @return InvalidRecord with the array and the entry that is wrong, Cancelled or Ok

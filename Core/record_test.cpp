@@ -577,8 +577,6 @@ TEST_P(DamagedRecord, NamesWhatIsWrong)
     expectRefusedByCursor();
     r.lostSourceCodes.assign(kPackedPadding, 0);
     expectRefusedByCursor();
-    r.lostSourceCodes.resize(3);
-    expectRefusedByCursor();
     // Another original cell, or the place of another old one.
     r.lostSourceCodes[0] ^= 2;
     expectRefusedByCursor();
@@ -635,6 +633,16 @@ TEST_P(DamagedRecord, CountsThatContradictEachOther)
       expectRefused(view);
     }
   }
+  for (const std::int64_t size : { std::numeric_limits<std::int64_t>::min(), std::int64_t{ -1 },
+         std::int64_t{ 6 }, std::numeric_limits<std::int64_t>::max() })
+  {
+    view = good;
+    view.lostCodeSize = size;
+    if (view.stepsOrderCells())
+    {
+      expectRefused(view);
+    }
+  }
   view = good;
   view.lostSourceSize -= 1;
   if (GetParam().sources && GetParam().form == Form::Shapes)
@@ -646,6 +654,121 @@ TEST_P(DamagedRecord, CountsThatContradictEachOther)
 INSTANTIATE_TEST_SUITE_P(Settings, DamagedRecord,
   ::testing::Values(Setting{ Form::Codes, false }, Setting{ Form::Codes, true },
     Setting{ Form::Shapes, false }, Setting{ Form::Shapes, true }));
+
+// Codes of lost sources that could be read but that nobody writes: going back would not find them.
+TEST(LostSources, OnlyWhatIsWrittenIsTaken)
+{
+  HashQueueDecimationOptions options;
+  options.targetReduction = 0.8;
+  options.trackCellSources = true;
+  const Decimated decimated(testing::hills(12, 12), options);
+  const Record& good = decimated.result.record;
+  const std::vector<Index>& base = decimated.result.baseTriangles;
+  const int bits = good.view().numberBits();
+  const HoleCounts& hole = kHoles[good.stepHoles[0]];
+  const HoleCode code(hole, good.codes.data(), true, bits);
+  ASSERT_GT(hole.newCount, 1);
+  const KnownSources known(hole.newCount, hole.oldCount, [&code](int i) { return code.source(i); });
+  int lost = 0;
+  while (known.has(lost))
+  {
+    ++lost;
+  }
+  ASSERT_LT(lost, hole.oldCount);
+
+  const auto refusal = [&base](const Record& record)
+  {
+    Undecimation cursor;
+    const Outcome outcome = cursor.open(record.view(), base.data());
+    EXPECT_EQ(outcome.status, outcome ? Status::Ok : Status::InvalidRecord);
+    return outcome.message;
+  };
+  EXPECT_EQ(refusal(good), "");
+  // The first code of all, in another way.
+  const auto withFirst = [&](bool isPlace, Index value)
+  {
+    const unsigned char* bytes = good.lostSourceCodes.data();
+    const std::int64_t end =
+      8 * (static_cast<std::int64_t>(good.lostSourceCodes.size()) - kPackedPadding);
+    const bool wasPlace = packedBits(bytes, 0, 1) != 0;
+    Record record = good;
+    record.lostSourceCodes.assign(packedSize(end + 64), 0);
+    BitWriter writer(record.lostSourceCodes.data());
+    writer.add(isPlace ? 1 : 0, 1);
+    writer.add(value, isPlace ? hole.placeBits : bits);
+    for (std::int64_t bit = 1 + (wasPlace ? hole.placeBits : bits); bit < end; ++bit)
+    {
+      writer.add(packedBits(bytes, bit, 1), 1);
+    }
+    writer.finish();
+    return record;
+  };
+  const auto expectUnfit = [&](const Record& record)
+  {
+    EXPECT_NE(refusal(record).find("step 0 does not fit the values"), std::string::npos)
+      << refusal(record);
+  };
+  expectUnfit(withFirst(false, good.baseSources[code.number(0)])); // there is a place for it
+  expectUnfit(withFirst(false, good.cellCount));
+  expectUnfit(withFirst(true, lost)); // not known yet
+  expectUnfit(withFirst(true, (1 << hole.placeBits) - 1));
+
+  // Two heirs of one source that show different cells.
+  const auto shown = [&](int i) { return good.baseSources[code.number(i)]; };
+  int other = 1;
+  while (other + 1 < hole.newCount && shown(other) == shown(0))
+  {
+    ++other;
+  }
+  ASSERT_NE(shown(other), shown(0));
+  Record record = good;
+  BitWriter writer(record.codes.data());
+  for (int i = 0; i < hole.oldCount; ++i)
+  {
+    writer.add(code.corner(i), 2);
+  }
+  for (int i = 0; i < hole.newCount; ++i)
+  {
+    writer.add(code.ear(i), hole.placeBits);
+  }
+  for (int i = 0; i < hole.newCount; ++i)
+  {
+    writer.add(code.source(0), hole.placeBits);
+  }
+  for (int i = 0; i < hole.newCount; ++i)
+  {
+    writer.add(code.number(i), bits);
+  }
+  writer.finish();
+  expectUnfit(record);
+
+  // Nothing is wrong but the length.
+  record = good;
+  record.lostSourceCodes.push_back(0);
+  EXPECT_NE(refusal(record).find("too long"), std::string::npos) << refusal(record);
+  record = good;
+  const std::int64_t gone = static_cast<std::int64_t>(good.lostSourceCodes.size());
+  ASSERT_GT(gone, 2 * kPackedPadding);
+  record.lostSourceCodes.resize(gone / 2);
+  EXPECT_NE(refusal(record).find("does not fit the values"), std::string::npos);
+}
+
+// Without steps nothing but the sources themselves says that they are wrong.
+TEST(LostSources, AtLevelOneEachCellShowsItsOwn)
+{
+  HashQueueDecimationOptions options;
+  options.targetReduction = 0.0;
+  options.trackCellSources = true;
+  const Decimated decimated(testing::hills(6, 6), options);
+  ASSERT_EQ(decimated.steps(), 0);
+  Record record = decimated.result.record;
+  Undecimation cursor;
+  ASSERT_TRUE(cursor.open(record.view(), decimated.result.baseTriangles.data()));
+  record.baseSources[0] = record.baseSources[1];
+  const Outcome outcome = cursor.open(record.view(), decimated.result.baseTriangles.data());
+  EXPECT_EQ(outcome.status, Status::InvalidRecord);
+  EXPECT_NE(outcome.message.find("at level 1"), std::string::npos) << outcome.message;
+}
 
 TEST(RecordView, MissingArraysAreRefused)
 {

@@ -6,9 +6,9 @@
 #include "cell_sources.h"
 #include "hole_code.h"
 #include "large_array.h"
-#include "record_shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <functional>
@@ -542,7 +542,7 @@ private:
       record.baseSources[i] = sources[record.cellOrder[i]];
     }
     release(sources);
-    record.lostSourceCodes.resize(static_cast<std::size_t>(packedSize(bits, 1)), 0);
+    record.lostSourceCodes.resize(static_cast<std::size_t>(packedSize(bits)), 0);
     BitWriter writer(record.lostSourceCodes.data());
     auto begin = lost.end();
     for (auto loss = losses.rbegin(); loss != losses.rend(); ++loss)

@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace undecimate
@@ -93,6 +95,11 @@ TEST_P(SomeThreads, ExceptionsReachTheCaller)
         if (job == 10)
         {
           throw std::runtime_error("job 10");
+        }
+        if (job > 10)
+        {
+          // So that the others can't be through with all before it is thrown.
+          std::this_thread::sleep_for(std::chrono::microseconds(100));
         }
       });
   }

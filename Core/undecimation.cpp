@@ -162,7 +162,7 @@ public:
   // Whether nothing but the padding is behind a position.
   static bool isLostEnd(const RecordView& record, std::int64_t position)
   {
-    return !record.hasSources || packedSize(position, 1) == record.lostCodeSize;
+    return !record.hasSources || packedSize(position) == record.lostCodeSize;
   }
 
   static constexpr int firstListed() { return 1; } // only a hole without new cells lists nodes
@@ -408,8 +408,8 @@ Outcome Undecimation::walkAll(const MonitorShare& walk)
     if (this->record_.hasSources && !this->areNextSourcesSound<Step>())
     {
       return { Status::InvalidRecord,
-        "Record array 'LostSources' is damaged: step " + std::to_string(this->steps_) +
-          " does not fit the values that its level shows." };
+        "Record array 'LostSources' is damaged, or 'BaseSources' or 'HoleCodes': step " +
+          std::to_string(this->steps_) + " does not fit the values that its level shows." };
     }
     scout.advance();
     this->refine<Step>();
@@ -421,7 +421,9 @@ Outcome Undecimation::walkAll(const MonitorShare& walk)
   if (!this->showsAllCells())
   {
     return { Status::InvalidRecord,
-      "Record array 'LostSources' is damaged: at level 1 not every cell shows its own values." };
+      "Record array 'LostSources' is damaged, or 'BaseSources' or 'CellOrder': at level 1 not "
+      "every "
+      "cell shows its own values." };
   }
   return {};
 }
@@ -429,11 +431,12 @@ Outcome Undecimation::walkAll(const MonitorShare& walk)
 // At level 1 each cell has its own source.
 bool Undecimation::showsAllCells() const
 {
+  const bool hasOrder = !this->record_.stepsOrderCells();
   std::vector<bool> seen(this->sources_.size(), false);
   for (std::size_t slot = 0; slot < this->sources_.size(); ++slot)
   {
     const Index cell = this->sources_[slot];
-    if (seen[cell] || (this->record_.cellOrder && this->record_.cellOrder[slot] != cell))
+    if (seen[cell] || (hasOrder && this->record_.cellOrder[slot] != cell))
     {
       return false;
     }
@@ -603,7 +606,7 @@ void Undecimation::refine()
 {
   constexpr std::size_t corners = Step::kCorners;
   const Step step(this->record_, this->steps_, this->position_, this->numberBits_);
-  Index slots[kMaximumPatchCells];
+  Index slots[kMaximumPatchCells] = {};
   this->findSlots(step, slots);
   Index* cells = this->cells_.data();
   Index locals[256];
@@ -620,7 +623,7 @@ void Undecimation::refine()
     { cells[corners * slots[cell] + corner] = locals[local]; });
   if (this->record_.hasSources)
   {
-    Index old[kMaximumPatchCells];
+    Index old[kMaximumPatchCells] = {};
     for (int i = 0; i < step.newCount; ++i)
     {
       old[step.source(i)] = this->sources_[slots[i]];
@@ -646,7 +649,7 @@ void Undecimation::coarsen()
   this->position_ -= Step::size(this->record_, this->steps_, this->numberBits_);
   const Step step(this->record_, this->steps_, this->position_, this->numberBits_);
   this->cellCount_ -= step.oldCount - step.newCount;
-  Index slots[kMaximumPatchCells];
+  Index slots[kMaximumPatchCells] = {};
   this->findSlots(step, slots);
   Index* cells = this->cells_.data();
   Index locals[256];
@@ -657,7 +660,7 @@ void Undecimation::coarsen()
     { cells[corners * slots[cell] + corner] = locals[local]; });
   if (this->record_.hasSources)
   {
-    Index old[kMaximumPatchCells];
+    Index old[kMaximumPatchCells] = {};
     for (int i = 0; i < step.oldCount; ++i)
     {
       old[i] = this->sources_[slots[i]];

@@ -731,13 +731,14 @@ bool shareRecordArrays(const RecordFields& a, const RecordFields& b)
 {
   const RecordView& v = a.view;
   const RecordView& w = b.view;
-  // Of the same arrays, and so of the same lengths; whoever writes into one makes it newer.
-  return v.stepCount > 0 && v.nodeOrder == w.nodeOrder && v.cellOrder == w.cellOrder &&
-    v.stepErrors == w.stepErrors && v.patches == w.patches && v.stepHoles == w.stepHoles &&
-    v.codes == w.codes && v.stepShapes == w.stepShapes && v.shapeOffsets == w.shapeOffsets &&
-    v.shapes == w.shapes && v.baseSources == w.baseSources && v.lostSources == w.lostSources &&
-    v.lostSourceCodes == w.lostSourceCodes &&
-    a.header[kCornersPerCell] == b.header[kCornersPerCell] && a.keptTimes == b.keptTimes &&
+  // The same counts and arrays; whoever writes into one makes it newer.
+  return v.stepCount > 0 &&
+    std::equal(a.header + kVersion, a.header + kVertCount, b.header + kVersion) &&
+    v.nodeOrder == w.nodeOrder && v.cellOrder == w.cellOrder && v.stepErrors == w.stepErrors &&
+    v.patches == w.patches && v.stepHoles == w.stepHoles && v.codes == w.codes &&
+    v.stepShapes == w.stepShapes && v.shapeOffsets == w.shapeOffsets && v.shapes == w.shapes &&
+    v.baseSources == w.baseSources && v.lostSources == w.lostSources &&
+    v.lostSourceCodes == w.lostSourceCodes && a.keptTimes == b.keptTimes &&
     a.baseCells == b.baseCells;
 }
 

@@ -241,6 +241,20 @@ TEST(RecordFields, AnyFlippedByteIsFound)
   EXPECT_GE(arrays, 20);
 }
 
+// A record that was opened stands for another one only if their counts are the same, too.
+TEST(RecordFields, ShareArraysOnlyWithTheSameCounts)
+{
+  vtkSmartPointer<vtkPolyData> coarse = smallRecord();
+  RecordFields one;
+  RecordFields other;
+  undecimate::Monitor monitor;
+  ASSERT_EQ(readRecord(coarse, one, monitor), "");
+  ASSERT_EQ(readRecord(coarse, other, monitor), "");
+  EXPECT_TRUE(shareRecordArrays(one, other));
+  other.header[kCellCount] += 1;
+  EXPECT_FALSE(shareRecordArrays(one, other));
+}
+
 // Run a record whose checksum was put right after the damage. It may only be refused or shown: a
 // crash or, under the sanitizers, a read outside the arrays fails the test.
 bool survives(vtkPolyData* coarse)

@@ -216,8 +216,7 @@ void measure(const Grid& grid, const char* name, Criterion criterion, Way way, d
   std::printf("%s%s, %.0f nodes to %d\n", name, ways[static_cast<int>(way)], nodes,
     result.record.baseNodeCount);
   check("decimation, largest, a node", static_cast<double>(peakBytes - before) / nodes, peakBound);
-  checkRecord(
-    result.record, result.baseTriangles, recordBound(criterion, way), sources ? 33 : 25);
+  checkRecord(result.record, result.baseTriangles, recordBound(criterion, way), sources ? 33 : 25);
 }
 
 // Quads that move over time, without the positions, which are the caller's.
