@@ -619,8 +619,12 @@ void Undecimation::refine()
   {
     locals[firstListed + i] = step.patch(step.newCount + i);
   }
-  step.visitOld([&](int cell, int corner, int local)
-    { cells[corners * slots[cell] + corner] = locals[local]; });
+  step.visitOld(
+    [&](int cell, int corner, int local)
+    {
+      // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): each is new, listed, or the node
+      cells[corners * slots[cell] + corner] = locals[local];
+    });
   if (this->record_.hasSources)
   {
     Index old[kMaximumPatchCells] = {};
