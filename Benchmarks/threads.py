@@ -4,7 +4,8 @@
 
 Wall time of Update(), in turns, a process a run, and the error of the record beside that of the serial algorithm. Only
 worth something on a machine that does nothing else: what others take of it only ever makes a run slower, and hits one with
-two threads twice as often, so the fastest run of each kind is shown beside the median. What the machine allows is shown,
+two threads twice as often, so the fastest run of each kind is shown beside the median, and how many of the threads were
+busy on average (CPU / wall, with several), which others do not change much. What the machine allows is shown,
 too: as many runs with one thread at once, that have nothing to do with each other, against one alone. A virtual machine
 may have to ask its host for memory that was not used for a while, which took up to 0.7 s of a run of 1.7 s: each process
 touches more memory than it needs before it measures, and keeps it (GLIBC_TUNABLES), so that all runs find their memory
@@ -78,8 +79,8 @@ def main():
     args = a.parse_args()
     out = []
     print(f"| mesh | criterion | serial, s | 1 thread, s | {args.threads} threads, s | 1 / {args.threads}, median | least .. "
-          f"largest | fastest / fastest | {args.threads} runs at once | target | error / serial | target |\n"
-          "|---|---|--:|--:|--:|--:|--:|--:|--:|---|--:|---|")
+          f"largest | fastest / fastest | {args.threads} runs at once | CPU / wall | target | error / serial | target |\n"
+          "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|---|")
     for name in args.meshes:
         _, triangles, _, _, mesh = prepare(*name.split(":"))
         wanted = wanted_count(len(triangles), PERCENT)
@@ -97,11 +98,12 @@ def main():
             ratio, near = wall[1] / wall[args.threads], errors.pop() / rows[0][0]["error"]
             middle = float(np.median(ratio))
             allowed = float(np.median(args.threads * wall[1] / np.array(together)))
+            busy = float(np.median([r["cpu"] / r["wall"] for r in rows[args.threads]]))
             out.append({"mesh": name, "criterion": criterion, "threads": args.threads, "ratio": middle, "near": near,
-                        "allowed": allowed, "rows": rows})
+                        "allowed": allowed, "busy": busy, "rows": rows})
             print(f"| {name} | {criterion} | " + " | ".join(f"{np.median(w):.2f}" for w in wall.values()) +
                   f" | {middle:.2f} | {ratio.min():.2f} .. {ratio.max():.2f} | "
-                  f"{wall[1].min() / wall[args.threads].min():.2f} | {allowed:.2f} | >= {GOAL:g} "
+                  f"{wall[1].min() / wall[args.threads].min():.2f} | {allowed:.2f} | {busy:.2f} | >= {GOAL:g} "
                   f"{'met' if middle >= GOAL else '**missed**'} | {near:.3f} | <= {NEAR:g} "
                   f"{'met' if near <= NEAR else '**missed**'} |", flush=True)
     if args.json:
