@@ -421,9 +421,8 @@ Outcome Undecimation::walkAll(const MonitorShare& walk)
   if (!this->showsAllCells())
   {
     return { Status::InvalidRecord,
-      "Record array 'LostSources' is damaged, or 'BaseSources' or 'CellOrder': at level 1 not "
-      "every "
-      "cell shows its own values." };
+      "Record array 'LostSources' is damaged, or 'BaseSources' or 'CellOrder': "
+      "at level 1 not every cell shows its own values." };
   }
   return {};
 }
