@@ -164,7 +164,7 @@ struct DeviationCriterion::Shared
   }
 };
 
-struct DeviationCriterion::Internals
+struct alignas(kCacheLine) DeviationCriterion::Internals
 {
   std::shared_ptr<Shared> shared;
   TriangleTopology& topology = shared->topology;

@@ -81,7 +81,9 @@ public:
 
 private:
   static constexpr int kLevels = 4;
-  std::vector<std::uint64_t> bits_[kLevels];
+  // In whole cache lines: other threads have queues, too.
+  static constexpr std::size_t kLineWords = kCacheLine / sizeof(std::uint64_t);
+  LargeArray<std::uint64_t> bits_[kLevels];
 };
 
 /// Place of a node in the queue.
@@ -225,7 +227,7 @@ private:
   }
 
   LinksOf linksOf_;
-  std::vector<Ends> ends_;
+  LargeArray<Ends> ends_;
   IntervalBits bits_;
   Index size_ = 0;
 };

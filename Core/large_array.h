@@ -28,6 +28,9 @@
 namespace undecimate
 {
 
+/// Bytes. What different threads write all the time is to be in different lines.
+constexpr std::size_t kCacheLine = 64;
+
 /// Whether the elements of a new array are left as the memory is: the owner begins their lives, in
 /// shares of several threads. Elements without an initializer always are.
 template <typename T>
@@ -97,7 +100,6 @@ public:
   }
 
 private:
-  static constexpr std::size_t kCacheLine = 64;
   static constexpr std::size_t kHugePage = std::size_t{ 1 } << 21;
   static constexpr std::size_t kOffset = Shift * 16 * kCacheLine; // quarters of the smallest page
   static_assert(alignof(T) <= kCacheLine && Shift >= 0 && Shift < 4, "");

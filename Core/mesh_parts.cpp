@@ -141,13 +141,24 @@ void MeshParts::cut(int round, Index partNodes)
   this->threads_.run(this->count(),
     [&](Index part, int /*thread*/)
     {
-      const Range& here = this->parts_[part];
+      // Many nodes have the cell of the one before; other threads may count the same cell.
+      const Range here = this->parts_[part];
+      std::uint32_t cell = 0;
+      Index count = 0;
+      const auto add = [&] { counts[cell].fetch_add(count, std::memory_order_relaxed); };
       for (Index i = here.begin; i < here.end; ++i)
       {
         prefetch(&this->places_[this->nodes_[std::min(i + kAhead, here.end - 1)]]);
         this->cells_[i] = cellOf(this->nodes_[i]);
-        counts[this->cells_[i]].fetch_add(1, std::memory_order_relaxed);
+        if (this->cells_[i] != cell)
+        {
+          add();
+          cell = this->cells_[i];
+          count = 0;
+        }
+        ++count;
       }
+      add();
     });
 
   // From here on the part of each cell.
@@ -169,12 +180,14 @@ void MeshParts::cut(int round, Index partNodes)
   }
   const Index newCount = last + 1;
 
-  // Where the nodes of each old part go in each new one.
-  std::vector<Index> places(std::size_t{ 1 } * this->count() * newCount, 0);
+  // Where the nodes of each old part go in each new one: rows of whole cache lines.
+  constexpr std::size_t kLine = kCacheLine / sizeof(Index);
+  const std::size_t row = (newCount + kLine - 1) / kLine * kLine;
+  LargeArray<Index> places(row * this->count(), 0);
   this->threads_.run(this->count(),
     [&](Index old, int /*thread*/)
     {
-      Index* sizes = places.data() + std::size_t{ 1 } * old * newCount;
+      Index* sizes = places.data() + row * old;
       for (Index i = this->parts_[old].begin; i < this->parts_[old].end; ++i)
       {
         this->cells_[i] = counts[this->cells_[i]].load(std::memory_order_relaxed);
@@ -188,7 +201,7 @@ void MeshParts::cut(int round, Index partNodes)
     const Index begin = end;
     for (Index old = 0; old < this->count(); ++old)
     {
-      Index& size = places[std::size_t{ 1 } * old * newCount + part];
+      Index& size = places[row * old + part];
       end += size;
       size = end - size;
     }
@@ -197,7 +210,7 @@ void MeshParts::cut(int round, Index partNodes)
   this->threads_.run(this->count(),
     [&](Index old, int /*thread*/)
     {
-      Index* to = places.data() + std::size_t{ 1 } * old * newCount;
+      Index* to = places.data() + row * old;
       for (Index i = this->parts_[old].begin; i < this->parts_[old].end; ++i)
       {
         const Index node = this->nodes_[i];

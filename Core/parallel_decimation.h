@@ -30,6 +30,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <queue>
 #include <type_traits>
 #include <utility>
@@ -190,11 +191,11 @@ private:
   };
   using Queue = HashQueueOn<NodeLinks>;
 
-  // What a thread has of its own.
-  struct Worker
+  // What a thread has of its own, in cache lines of its own.
+  struct alignas(kCacheLine) Worker
   {
     CriterionType criterion;
-    std::unique_ptr<Queue> queue;
+    std::optional<Queue> queue;
     std::vector<Index> counts; // of candidates by interval, over the parts it has done
     std::vector<Index> nodes;  // to be queued
     Removal removal;
@@ -255,6 +256,7 @@ private:
       [&](Index part, int thread)
       {
         Index count = 0;
+        CostRange range; // not in the list of ranges, where other threads write beside it
         for (const Index* node = parts.begin(part); node != parts.end(part); ++node, ++count)
         {
           if ((count & 1023) == 0 &&
@@ -262,8 +264,9 @@ private:
           {
             return;
           }
-          evaluateFirst(this->topology_, this->workers_[thread]->criterion, *node, ranges[thread]);
+          evaluateFirst(this->topology_, this->workers_[thread]->criterion, *node, range);
         }
+        ranges[thread].add(range);
         done += count;
       });
     if (this->monitor_.cancelled())
@@ -277,8 +280,7 @@ private:
     this->intervals_ = std::make_unique<Intervals>(this->options_, ranges.front());
     for (auto& worker : this->workers_)
     {
-      worker->queue =
-        std::make_unique<Queue>(NodeLinks{ &this->topology_ }, this->intervals_->count());
+      worker->queue.emplace(NodeLinks{ &this->topology_ }, this->intervals_->count());
       worker->counts.assign(this->intervals_->count(), 0);
     }
     this->threads_.run(parts.count(),
@@ -347,7 +349,7 @@ private:
           return;
         }
         const Index part = job - 1;
-        Part& here = now[part];
+        Part here; // not in the list of parts, where other threads write beside it
         Worker& worker = *this->workers_[thread];
         worker.criterion.setTrianglesLeft(this->trianglesLeft_);
         const Index queued = this->fill(parts, part, worker, limit);
@@ -367,6 +369,7 @@ private:
             here.cellsGone += hole.triangleCount - filling.count;
           });
         gone += here.cellsGone;
+        now[part] = std::move(here);
         this->count(parts, part, worker);
       });
     done.swap(now);

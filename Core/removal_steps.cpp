@@ -382,7 +382,7 @@ private:
     this->run(blocks,
       [&](Index i)
       {
-        Block& block = this->blocks_[i];
+        Block block; // not in the list of blocks, where other threads write beside it
         block.begin = static_cast<Index>(std::int64_t{ this->steps_ } * i / blocks);
         block.end = static_cast<Index>(std::int64_t{ this->steps_ } * (i + 1) / blocks);
         this->visitSteps(block,
@@ -394,6 +394,7 @@ private:
             block.codes += counts.codeSize(header.hasSources, this->numberBits_);
             block.error = std::max(block.error, header.error);
           });
+        this->blocks_[i] = block;
       });
     for (Index i = 1; i < blocks; ++i)
     {
