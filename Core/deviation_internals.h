@@ -13,6 +13,7 @@
 #include "diagonal.h"
 #include "fold_rule.h"
 #include "hole_candidates.h"
+#include "large_array.h"
 #include "original_surface.h"
 #include "triangle_distance.h"
 

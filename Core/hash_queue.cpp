@@ -57,7 +57,7 @@ IntervalBits::IntervalBits(Index intervalCount)
   for (auto& level : this->bits_)
   {
     words = (words + 63) / 64;
-    level.assign((words + kLineWords - 1) / kLineWords * kLineWords, 0);
+    level.assign(words, 0);
   }
 }
 

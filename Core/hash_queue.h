@@ -81,8 +81,6 @@ public:
 
 private:
   static constexpr int kLevels = 4;
-  // In whole cache lines: other threads have queues, too.
-  static constexpr std::size_t kLineWords = kCacheLine / sizeof(std::uint64_t);
   LargeArray<std::uint64_t> bits_[kLevels];
 };
 

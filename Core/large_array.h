@@ -104,9 +104,10 @@ private:
   static constexpr std::size_t kOffset = Shift * 16 * kCacheLine; // quarters of the smallest page
   static_assert(alignof(T) <= kCacheLine && Shift >= 0 && Shift < 4, "");
 
+  // In whole cache lines: what other threads write is not beside it.
   static std::size_t byteSize(std::size_t count)
   {
-    return count * sizeof(T) + kOffset;
+    return (count * sizeof(T) + kOffset + kCacheLine - 1) / kCacheLine * kCacheLine;
   }
   static bool isLarge(std::size_t bytes)
   {

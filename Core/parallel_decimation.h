@@ -17,6 +17,7 @@
 #ifndef UNDECIMATE_CORE_PARALLEL_DECIMATION_H
 #define UNDECIMATE_CORE_PARALLEL_DECIMATION_H
 
+#include "large_array.h"
 #include "mesh_parts.h"
 #include "monitor.h"
 #include "node_removal.h"
@@ -196,8 +197,8 @@ private:
   {
     CriterionType criterion;
     std::optional<Queue> queue;
-    std::vector<Index> counts; // of candidates by interval, over the parts it has done
-    std::vector<Index> nodes;  // to be queued
+    LargeArray<Index> counts; // of candidates by interval, over the parts it has done
+    std::vector<Index> nodes; // to be queued
     Removal removal;
     StepWriter writer;
 
@@ -303,7 +304,7 @@ private:
   // All candidates, by interval in the first worker's counts.
   Index countCandidates()
   {
-    std::vector<Index>& counts = this->workers_.front()->counts;
+    LargeArray<Index>& counts = this->workers_.front()->counts;
     for (std::size_t i = 1; i < this->workers_.size(); ++i)
     {
       std::transform(counts.begin(), counts.end(), this->workers_[i]->counts.begin(),
@@ -321,7 +322,7 @@ private:
   // The interval up to which there are so many candidates. They are to be counted anew afterwards.
   Index costOf(double candidates)
   {
-    std::vector<Index>& counts = this->workers_.front()->counts;
+    LargeArray<Index>& counts = this->workers_.front()->counts;
     Index interval = 0;
     double sum = 0.0;
     while (interval + 1 < this->intervals_->count() && (sum += counts[interval]) < candidates)
@@ -335,7 +336,7 @@ private:
   // those of this one afterwards.
   bool removeInParts(MeshParts& parts, Index limit, std::vector<Part>& done)
   {
-    std::vector<Index>& counts = this->workers_.front()->counts;
+    LargeArray<Index>& counts = this->workers_.front()->counts;
     std::fill(counts.begin(), counts.end(), 0);
     std::vector<Part> now(parts.count());
     std::atomic<Index> gone{ 0 };
@@ -473,7 +474,7 @@ private:
         {
           place = this->intervals_->of(worker.removal.cost);
         }
-        if (verdict == Verdict::TooCostly)
+        if (verdict == Verdict::TooCostly && !this->tooCostly_)
         {
           this->tooCostly_ = true;
         }
@@ -665,11 +666,13 @@ private:
   Index trianglesLeft_;
   Index nodesLeft_;
   Index planned_; // triangles to go in all
-  double progress_ = 0.0;
   std::unique_ptr<Intervals> intervals_;
   std::vector<Index> places_;
-  std::vector<Index> removed_; // in the order of the record's steps
   std::vector<std::unique_ptr<Worker>> workers_;
+
+  // Written in a round, in a cache line behind what all threads read.
+  alignas(kCacheLine) std::vector<Index> removed_; // in the order of the record's steps
+  double progress_ = 0.0;
   std::atomic<bool> tooCostly_{ false };
 };
 
