@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Bytes a node of the core's calls, counted in the C library's allocation functions.
+// Bytes a node of the core's calls, counted in the C library's functions that give memory.
 //
 //   memory_test [grid size]
 //
@@ -11,7 +11,6 @@
 #include "tri_quad_decimation.h"
 #include "undecimation.h"
 
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -19,52 +18,45 @@
 #include <vector>
 
 #include <malloc.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 namespace
 {
 std::size_t liveBytes = 0;
 std::size_t peakBytes = 0;
 
-// Around a block of posix_memalign() there is address space that nobody touches: what was asked for
-// counts. Only large arrays come from there, of which there are few at a time.
-struct AlignedBlock
+void add(std::size_t bytes)
+{
+  liveBytes += bytes;
+  peakBytes = liveBytes > peakBytes ? liveBytes : peakBytes;
+}
+
+// Large arrays are mapped, with address space around them that nobody touches: the bytes count for
+// which huge pages are asked. There are few at a time.
+struct MappedArray
 {
   void* memory = nullptr;
   std::size_t size = 0;
 };
-AlignedBlock alignedBlocks[64];
+MappedArray mappedArrays[64];
 
-AlignedBlock* alignedBlock(void* memory)
+MappedArray* mappedArray(void* memory)
 {
-  for (AlignedBlock& block : alignedBlocks)
+  for (MappedArray& array : mappedArrays)
   {
-    if (block.memory == memory)
+    if (array.memory == memory)
     {
-      return &block;
+      return &array;
     }
   }
   return nullptr;
 }
 
-std::size_t sizeOf(void* memory)
-{
-  const AlignedBlock* block = memory ? alignedBlock(memory) : nullptr;
-  return block ? block->size : malloc_usable_size(memory); // 0 for null
-}
-
-void forget(void* memory)
-{
-  liveBytes -= sizeOf(memory);
-  if (AlignedBlock* block = memory ? alignedBlock(memory) : nullptr)
-  {
-    block->memory = nullptr;
-  }
-}
-
 void* counted(void* memory)
 {
-  liveBytes += sizeOf(memory);
-  peakBytes = liveBytes > peakBytes ? liveBytes : peakBytes;
+  add(malloc_usable_size(memory)); // 0 for null
   return memory;
 }
 }
@@ -88,29 +80,40 @@ extern "C"
   }
   void* realloc(void* memory, std::size_t size)
   {
-    forget(memory);
+    liveBytes -= malloc_usable_size(memory);
     return counted(__libc_realloc(memory, size));
   }
   void* aligned_alloc(std::size_t alignment, std::size_t size)
   {
     return counted(__libc_memalign(alignment, size));
   }
-  int posix_memalign(void** memory, std::size_t alignment, std::size_t size)
-  {
-    *memory = __libc_memalign(alignment, size);
-    AlignedBlock* block = alignedBlock(nullptr);
-    if (!*memory || !block)
-    {
-      return ENOMEM;
-    }
-    *block = { *memory, size };
-    counted(*memory);
-    return 0;
-  }
   void free(void* memory)
   {
-    forget(memory);
+    liveBytes -= malloc_usable_size(memory);
     __libc_free(memory);
+  }
+  int madvise(void* memory, std::size_t size, int advice)
+  {
+    if (advice == MADV_HUGEPAGE)
+    {
+      MappedArray* const array = mappedArray(nullptr);
+      if (!array)
+      {
+        std::abort();
+      }
+      *array = { memory, size };
+      add(size);
+    }
+    return static_cast<int>(syscall(SYS_madvise, memory, size, advice));
+  }
+  int munmap(void* memory, std::size_t size)
+  {
+    if (MappedArray* const array = memory ? mappedArray(memory) : nullptr)
+    {
+      liveBytes -= array->size;
+      array->memory = nullptr;
+    }
+    return static_cast<int>(syscall(SYS_munmap, memory, size));
   }
 }
 
