@@ -7,8 +7,6 @@
 /// The nodes of a mesh are visited in an order that memory does not know. With pages of 4 KiB
 /// nearly every visit then waits for the address translation as well. Linux gives pages of 2 MiB to
 /// those who ask (madvise); other systems, and arrays that are not large, get ordinary memory.
-/// Large arrays are mapped each by itself, so their memory is given back at once; the heap would
-/// keep what lies below something that is still needed.
 ///
 /// Large blocks of memory all begin at the same place in a page. A processor that compares only
 /// this place lets a read of an array wait for a write to the same index of another one. So arrays
@@ -18,14 +16,13 @@
 #define UNDECIMATE_CORE_LARGE_ARRAY_H
 
 #include <cstddef>
-#include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <new>
 #include <vector>
 
 #ifdef __linux__
 #include <sys/mman.h>
-#include <unistd.h>
 #endif
 
 namespace undecimate
@@ -39,7 +36,8 @@ constexpr std::size_t kCacheLine = 64;
 template <typename T>
 inline constexpr bool kMadeByOwner = false;
 
-/// An allocator for std::vector. Costs no memory beside the array.
+/// An allocator for std::vector. Costs no memory beside the array, but up to a huge page of address
+/// space.
 /// @tparam Shift 0 to 3: arrays of different shifts begin at different places in a page
 template <typename T, int Shift>
 class LargeArrayAllocator
@@ -84,7 +82,7 @@ public:
 #ifdef __linux__
     if (isLarge(byteSize(count)))
     {
-      munmap(memory, byteSize(count));
+      std::free(memory);
       return;
     }
 #endif
@@ -113,42 +111,23 @@ private:
   }
   static bool isLarge(std::size_t bytes)
   {
-    return bytes >= kHugePage;
+    return bytes >= 2 * kHugePage;
   }
-
-#ifdef __linux__
-  // From the beginning of a huge page on. Not in whole huge pages: of the last one, only what is
-  // needed is to be there.
-  static char* mapBytes(std::size_t bytes)
-  {
-    void* const mapped =
-      mmap(nullptr, bytes + kHugePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapped == MAP_FAILED)
-    {
-      throw std::bad_alloc();
-    }
-    const std::size_t page = sysconf(_SC_PAGESIZE);
-    char* const begin = static_cast<char*>(mapped);
-    const std::size_t before = -reinterpret_cast<std::uintptr_t>(begin) % kHugePage;
-    char* const memory = begin + before;
-    const std::size_t here = (bytes + page - 1) / page * page;
-    if (before > 0)
-    {
-      munmap(begin, before);
-    }
-    munmap(memory + here, bytes + kHugePage - before - here);
-    // Only advice: without huge pages the memory is as good as any.
-    static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
-    return memory;
-  }
-#endif
 
   static char* allocateBytes(std::size_t bytes)
   {
 #ifdef __linux__
     if (isLarge(bytes))
     {
-      return mapBytes(bytes);
+      // Not in whole huge pages: of the last one, only what is needed is to be there.
+      void* memory = nullptr;
+      if (posix_memalign(&memory, kHugePage, bytes) != 0)
+      {
+        throw std::bad_alloc();
+      }
+      // Only advice: without huge pages the memory is as good as any.
+      static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
+      return static_cast<char*>(memory);
     }
 #endif
     return static_cast<char*>(::operator new (bytes, std::align_val_t{ kCacheLine }));

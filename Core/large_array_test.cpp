@@ -5,17 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <new>
 #include <utility>
 #include <vector>
-
-#ifdef __linux__
-#include <unistd.h>
-#endif
 
 namespace undecimate
 {
@@ -62,36 +56,6 @@ TEST(LargeArray, IsAVector)
   release(moved);
   EXPECT_EQ(moved.capacity(), 0U);
 }
-
-#ifdef __linux__
-// Bytes of this process that are in memory.
-std::size_t resident()
-{
-  std::size_t all = 0;
-  std::size_t pages = 0;
-  std::ifstream("/proc/self/statm") >> all >> pages;
-  return pages * sysconf(_SC_PAGESIZE);
-}
-
-TEST(LargeArray, GivesItsMemoryBackAtOnce)
-{
-  constexpr std::size_t kBytes = std::size_t{ 3 } << 20; // the heap would keep them
-  std::vector<LargeArray<char>> arrays;
-  const std::size_t before = resident();
-  for (int i = 0; i < 16; ++i)
-  {
-    arrays.emplace_back(kBytes, 1);
-  }
-  const std::size_t full = resident();
-  EXPECT_GE(full, before + 16 * kBytes);
-  EXPECT_LT(full, before + 17 * kBytes);
-  for (int i = 0; i < 15; ++i)
-  {
-    release(arrays[i]);
-  }
-  EXPECT_LT(resident(), before + 2 * kBytes);
-}
-#endif
 
 TEST(LargeArray, MoreThanThereIsIsRefused)
 {

@@ -312,8 +312,8 @@ void TriangleTopology::markDegenerate(Threads* threads)
 void TriangleTopology::markNodes(Threads* threads)
 {
   const Index nodeCount = this->nodeCount();
-  // Twice the triangles, and 1 if a fan's end is here, a boundary edge that leaves the node.
-  LargeArray<std::uint32_t> uses(nodeCount, 0);
+  LargeArray<Index> uses(nodeCount, 0);
+  std::vector<unsigned char> open(nodeCount, 0); // fans' ends: boundary edges that leave the node
   doInShares(threads, nodeCount,
     [&](const auto& ours)
     {
@@ -328,10 +328,13 @@ void TriangleTopology::markNodes(Threads* threads)
             {
               continue;
             }
-            uses[node] += 2;
+            ++uses[node];
             // The first triangle of an open fan has nothing behind its edge node -> next node.
             const bool start = t.across[previousCorner(c)] == kNoCorner;
-            uses[node] |= start ? 1 : 0;
+            if (start && open[node] < 2)
+            {
+              ++open[node];
+            }
             if (start || this->nodes_[node].corner == kNoCorner)
             {
               this->nodes_[node].corner = makeCorner(i, c);
@@ -341,8 +344,7 @@ void TriangleTopology::markNodes(Threads* threads)
     });
   const auto mark = [&](Index node)
   {
-    const Index triangles = static_cast<Index>(uses[node] / 2);
-    if (triangles == 0 || this->nodes_[node].kind != NodeKind::Unused)
+    if (uses[node] == 0 || this->nodes_[node].kind != NodeKind::Unused)
     {
       return;
     }
@@ -358,10 +360,10 @@ void TriangleTopology::markNodes(Threads* threads)
       corner = opposite == kNoCorner
         ? kNoCorner
         : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
-    } while (corner != kNoCorner && corner != start && count <= triangles);
-    this->nodes_[node].kind = count != triangles ? NodeKind::NonManifold
-      : uses[node] % 2 == 0                      ? NodeKind::Interior
-                                                 : NodeKind::Boundary;
+    } while (corner != kNoCorner && corner != start && count <= uses[node]);
+    this->nodes_[node].kind = count != uses[node] ? NodeKind::NonManifold
+      : open[node] == 0                           ? NodeKind::Interior
+                                                  : NodeKind::Boundary;
   };
   doInBlocks(threads, nodeCount, kBlock,
     [&](Index begin, Index end)

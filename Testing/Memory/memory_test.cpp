@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) 2026 The Undecimate authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Bytes a node of the core's calls, counted in the C library's functions that give memory.
+// Bytes a node of the core's calls, counted in the C library's allocation functions.
 //
 //   memory_test [grid size]
 //
@@ -11,6 +11,7 @@
 #include "tri_quad_decimation.h"
 #include "undecimation.h"
 
+#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -18,45 +19,52 @@
 #include <vector>
 
 #include <malloc.h>
-#include <sys/mman.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 namespace
 {
 std::size_t liveBytes = 0;
 std::size_t peakBytes = 0;
 
-void add(std::size_t bytes)
-{
-  liveBytes += bytes;
-  peakBytes = liveBytes > peakBytes ? liveBytes : peakBytes;
-}
-
-// Large arrays are mapped, with address space around them that nobody touches: the bytes count for
-// which huge pages are asked. There are few at a time.
-struct MappedArray
+// Around a block of posix_memalign() there is address space that nobody touches: what was asked for
+// counts. Only large arrays come from there, of which there are few at a time.
+struct AlignedBlock
 {
   void* memory = nullptr;
   std::size_t size = 0;
 };
-MappedArray mappedArrays[64];
+AlignedBlock alignedBlocks[64];
 
-MappedArray* mappedArray(void* memory)
+AlignedBlock* alignedBlock(void* memory)
 {
-  for (MappedArray& array : mappedArrays)
+  for (AlignedBlock& block : alignedBlocks)
   {
-    if (array.memory == memory)
+    if (block.memory == memory)
     {
-      return &array;
+      return &block;
     }
   }
   return nullptr;
 }
 
+std::size_t sizeOf(void* memory)
+{
+  const AlignedBlock* block = memory ? alignedBlock(memory) : nullptr;
+  return block ? block->size : malloc_usable_size(memory); // 0 for null
+}
+
+void forget(void* memory)
+{
+  liveBytes -= sizeOf(memory);
+  if (AlignedBlock* block = memory ? alignedBlock(memory) : nullptr)
+  {
+    block->memory = nullptr;
+  }
+}
+
 void* counted(void* memory)
 {
-  add(malloc_usable_size(memory)); // 0 for null
+  liveBytes += sizeOf(memory);
+  peakBytes = liveBytes > peakBytes ? liveBytes : peakBytes;
   return memory;
 }
 }
@@ -80,40 +88,29 @@ extern "C"
   }
   void* realloc(void* memory, std::size_t size)
   {
-    liveBytes -= malloc_usable_size(memory);
+    forget(memory);
     return counted(__libc_realloc(memory, size));
   }
   void* aligned_alloc(std::size_t alignment, std::size_t size)
   {
     return counted(__libc_memalign(alignment, size));
   }
+  int posix_memalign(void** memory, std::size_t alignment, std::size_t size)
+  {
+    *memory = __libc_memalign(alignment, size);
+    AlignedBlock* block = alignedBlock(nullptr);
+    if (!*memory || !block)
+    {
+      return ENOMEM;
+    }
+    *block = { *memory, size };
+    counted(*memory);
+    return 0;
+  }
   void free(void* memory)
   {
-    liveBytes -= malloc_usable_size(memory);
+    forget(memory);
     __libc_free(memory);
-  }
-  int madvise(void* memory, std::size_t size, int advice)
-  {
-    if (advice == MADV_HUGEPAGE)
-    {
-      MappedArray* const array = mappedArray(nullptr);
-      if (!array)
-      {
-        std::abort();
-      }
-      *array = { memory, size };
-      add(size);
-    }
-    return static_cast<int>(syscall(SYS_madvise, memory, size, advice));
-  }
-  int munmap(void* memory, std::size_t size)
-  {
-    if (MappedArray* const array = memory ? mappedArray(memory) : nullptr)
-    {
-      liveBytes -= array->size;
-      array->memory = nullptr;
-    }
-    return static_cast<int>(syscall(SYS_munmap, memory, size));
   }
 }
 
