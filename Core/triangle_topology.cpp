@@ -93,6 +93,10 @@ void TriangleTopology::build(const Number* triangles, Threads* threads)
   else if (!this->connect(*threads))
   {
     fill();
+    for (MeshNode& node : this->nodes_)
+    {
+      node.corner = kNoCorner;
+    }
     this->connect();
   }
   this->markDegenerate(threads);
@@ -123,13 +127,12 @@ void TriangleTopology::findRanges(Index begin, Index end)
 // there are edges of more than two or of misoriented triangles, which lie in several shares.
 bool TriangleTopology::connect(Threads& threads)
 {
-  LargeArray<Corner> first(this->nodes_.size());
   LargeArray<Corner, 2> next(std::size_t{ 3 } * this->triangles_.size());
   std::atomic<bool> good{ true };
   doInShares(&threads, this->nodeCount(),
     [&](const Share& ours)
     {
-      if (!this->connectShare(ours, first, next))
+      if (!this->connectShare(ours, next))
       {
         good = false;
       }
@@ -137,12 +140,10 @@ bool TriangleTopology::connect(Threads& threads)
   return good;
 }
 
-bool TriangleTopology::connectShare(
-  const Share& ours, LargeArray<Corner>& first, LargeArray<Corner, 2>& next)
+bool TriangleTopology::connectShare(const Share& ours, LargeArray<Corner, 2>& next)
 {
   const auto behind = [&next](Corner corner) -> Corner&
   { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
-  std::fill(first.begin() + ours.begin, first.begin() + ours.end, kNoCorner);
   bool good = true;
   const auto connectTriangle = [&](Index i)
   {
@@ -161,7 +162,8 @@ bool TriangleTopology::connectShare(
         continue;
       }
       const Corner here = makeCorner(i, c);
-      Corner there = first[smaller];
+      Corner& first = this->nodes_[smaller].corner;
+      Corner there = first;
       for (; there != kNoCorner; there = behind(there))
       {
         const auto& others = this->triangles_[triangleOf(there)].nodes;
@@ -179,8 +181,8 @@ bool TriangleTopology::connectShare(
       }
       if (there == kNoCorner)
       {
-        behind(here) = first[smaller];
-        first[smaller] = here;
+        behind(here) = first;
+        first = here;
         continue;
       }
       Corner& across = this->triangles_[triangleOf(there)].across[cornerOf(there)];
@@ -205,11 +207,11 @@ bool TriangleTopology::connectShare(
 }
 
 // Find the triangles on either side of each edge. Of each edge the first corner opposite to it is
-// listed at the edge's smaller node: three corners at a node on the average.
+// listed at the edge's smaller node, which has the head of the list in its `corner`: three corners
+// at a node on the average.
 void TriangleTopology::connect()
 {
   const Index triangleCount = static_cast<Index>(this->triangles_.size());
-  LargeArray<Corner> first(this->nodes_.size(), kNoCorner);
   LargeArray<Corner, 2> next(std::size_t{ 3 } * triangleCount);
   const auto behind = [&next](Corner corner) -> Corner&
   { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
@@ -223,7 +225,8 @@ void TriangleTopology::connect()
       const Index to = t.nodes[previousCorner(c)];
       const Index smaller = std::min(from, to);
       const Corner here = makeCorner(i, c);
-      Corner there = first[smaller];
+      Corner& first = this->nodes_[smaller].corner;
+      Corner there = first;
       Index thereFrom = kNone;
       for (; there != kNoCorner; there = behind(there))
       {
@@ -237,8 +240,8 @@ void TriangleTopology::connect()
       }
       if (there == kNoCorner)
       {
-        behind(here) = first[smaller];
-        first[smaller] = here;
+        behind(here) = first;
+        first = here;
         this->meet(from, to);
         continue;
       }
@@ -312,8 +315,9 @@ void TriangleTopology::markDegenerate(Threads* threads)
 void TriangleTopology::markNodes(Threads* threads)
 {
   const Index nodeCount = this->nodeCount();
-  LargeArray<Index> uses(nodeCount, 0);
-  std::vector<unsigned char> open(nodeCount, 0); // fans' ends: boundary edges that leave the node
+  // In the nodes' values: twice their triangles, and 1 if a fan's end is here, a boundary edge that
+  // leaves the node. Their corners are heads of connect()'s lists until the first triangle is
+  // found.
   doInShares(threads, nodeCount,
     [&](const auto& ours)
     {
@@ -323,34 +327,34 @@ void TriangleTopology::markNodes(Threads* threads)
           const Triangle& t = this->triangles_[i];
           for (int c = 0; c < 3; ++c)
           {
-            const Index node = t.nodes[c];
-            if (!ours.has(node))
+            if (!ours.has(t.nodes[c]))
             {
               continue;
             }
-            ++uses[node];
+            MeshNode& node = this->nodes_[t.nodes[c]];
             // The first triangle of an open fan has nothing behind its edge node -> next node.
             const bool start = t.across[previousCorner(c)] == kNoCorner;
-            if (start && open[node] < 2)
+            if (start || node.value == 0)
             {
-              ++open[node];
+              node.corner = makeCorner(i, c);
             }
-            if (start || this->nodes_[node].corner == kNoCorner)
-            {
-              this->nodes_[node].corner = makeCorner(i, c);
-            }
+            node.value = static_cast<std::int32_t>(
+              (static_cast<std::uint32_t>(node.value) + 2) | (start ? 1U : 0U));
           }
         });
     });
-  const auto mark = [&](Index node)
+  const auto mark = [&](MeshNode& node)
   {
-    if (uses[node] == 0 || this->nodes_[node].kind != NodeKind::Unused)
+    const auto triangles = static_cast<Index>(static_cast<std::uint32_t>(node.value) / 2);
+    const bool isOpen = node.value % 2 != 0;
+    node.value = 0;
+    if (triangles == 0 || node.kind != NodeKind::Unused)
     {
       return;
     }
     // One fan must take in all triangles of the node, else surfaces just touch there.
     Index count = 0;
-    const Corner start = this->nodes_[node].corner;
+    const Corner start = node.corner;
     Corner corner = start;
     do
     {
@@ -360,17 +364,17 @@ void TriangleTopology::markNodes(Threads* threads)
       corner = opposite == kNoCorner
         ? kNoCorner
         : makeCorner(triangleOf(opposite), nextCorner(cornerOf(opposite)));
-    } while (corner != kNoCorner && corner != start && count <= uses[node]);
-    this->nodes_[node].kind = count != uses[node] ? NodeKind::NonManifold
-      : open[node] == 0                           ? NodeKind::Interior
-                                                  : NodeKind::Boundary;
+    } while (corner != kNoCorner && corner != start && count <= triangles);
+    node.kind = count != triangles ? NodeKind::NonManifold
+      : isOpen                     ? NodeKind::Boundary
+                                   : NodeKind::Interior;
   };
   doInBlocks(threads, nodeCount, kBlock,
     [&](Index begin, Index end)
     {
       for (Index node = begin; node < end; ++node)
       {
-        mark(node);
+        mark(this->nodes_[node]);
       }
     });
 }

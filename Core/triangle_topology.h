@@ -91,7 +91,7 @@ struct alignas(64) MeshNode
 {
   NodeKind kind = NodeKind::Unused;
   bool kept = false;            ///< free for the user: is never removed
-  std::int32_t value = 0;       ///< free for the user
+  std::int32_t value = 0;       ///< free for the user, 0 at first
   Vector position;              ///< undefined if the topology was made without positions
   std::uint64_t neighbours = 0; ///< topology: see TriangleTopology::mayHaveEdge()
   std::uint64_t sum = 0;        ///< free for the user
@@ -347,7 +347,7 @@ private:
   template <typename Number>
   void build(const Number* triangles, Threads* threads);
   void connect();
-  bool connectShare(const Share& ours, LargeArray<Corner>& first, LargeArray<Corner, 2>& next);
+  bool connectShare(const Share& ours, LargeArray<Corner, 2>& next);
   bool connect(Threads& threads);
   void findRanges(Index begin, Index end);
   void markDegenerate(Threads* threads);

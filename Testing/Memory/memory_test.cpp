@@ -277,10 +277,10 @@ int main(int argc, char* argv[])
     measure(Grid(500), "Quadric", Criterion::Quadric, Way::Plain, 162);
   }
   const Grid grid(argc > 1 ? std::atoi(argv[1]) : 200);
-  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Plain, 160);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Plain, 155);
   measure(grid, "Quadric", Criterion::Quadric, Way::Plain, 170);
   measure(grid, "Deviation", Criterion::Deviation, Way::Plain, 230);
-  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::WithSources, 165);
+  measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::WithSources, 155);
   measure(grid, "Angle to XY Plane", Criterion::AngleToXYPlane, Way::Plain, 190);
   measure(grid, "Angle to XY Plane", Criterion::AngleToXYPlane, Way::WithSources, 210);
   measure(grid, "Scalar Difference", Criterion::ScalarDifference, Way::Parallel, 172);
