@@ -27,7 +27,7 @@ MeanEdgeCriterion::MeanEdgeCriterion(
     doInShares(
       threads, nodeCount, [&](const Share& share) { this->setValues(range.lowest[0], share); });
   }
-  doInShares(threads, nodeCount, [this](const auto& ours) { this->addEdges(ours); });
+  topology.doInNodeShares(threads, [this](const auto& share) { this->addEdges(share); });
 }
 
 void MeanEdgeCriterion::setValues(double lowest, const Share& share)
@@ -51,10 +51,10 @@ void MeanEdgeCriterion::setValues(double lowest, const Share& share)
 
 // To some of the nodes, the sums of their edges.
 template <typename Nodes>
-void MeanEdgeCriterion::addEdges(const Nodes& ours)
+void MeanEdgeCriterion::addEdges(const Nodes& share)
 {
-  this->topology_.visitTriangles(ours,
-    [&](Index t)
+  this->topology_.visitTriangles(share,
+    [&](Index t, const auto& ours)
     {
       const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
       for (int c = 0; c < 3; ++c)

@@ -85,7 +85,7 @@ private:
   void addEdge(Index a, Index b);
   void setValues(double lowest, const Share& share);
   template <typename Nodes>
-  void addEdges(const Nodes& ours);
+  void addEdges(const Nodes& share);
 
   TriangleTopology& topology_;
   HeightFieldDirection heightField_;

@@ -75,11 +75,11 @@ OriginalSurface::OriginalSurface(const TriangleTopology& topology, Threads* thre
 {
   // A fan has a node more than triangles. Where triangles make no fan each of them is one.
   const Index triangleCount = topology.triangleCount();
-  doInShares(threads, topology.nodeCount(),
-    [&](const auto& ours)
+  topology.doInNodeShares(threads,
+    [&](const auto& share)
     {
-      topology.visitTriangles(ours,
-        [&](Index t)
+      topology.visitTriangles(share,
+        [&](Index t, const auto& ours)
         {
           for (const Index node : topology.triangle(t).nodes)
           {

@@ -75,11 +75,11 @@ QuadricCriterion::QuadricCriterion(TriangleTopology& topology, Threads* threads)
 {
   const double diagonal = diagonalOf(topology, threads);
   this->unit_ = diagonal > 0.0 ? 1.0 / diagonal : 0.0;
-  doInShares(threads, topology.nodeCount(),
-    [this](const auto& ours)
+  topology.doInNodeShares(threads,
+    [this](const auto& share)
     {
-      this->addPlanes(ours);
-      this->findCosts(ours);
+      this->addPlanes(share);
+      this->findCosts(share);
     });
 }
 
@@ -102,12 +102,12 @@ void QuadricCriterion::store(Index node, const Quadric& q)
 
 // To some of the nodes. All these planes go through the node itself, so they add nothing but to A.
 template <typename Nodes>
-void QuadricCriterion::addPlanes(const Nodes& ours)
+void QuadricCriterion::addPlanes(const Nodes& share)
 {
-  std::fill(this->stored_ + ours.begin, this->stored_ + ours.end,
+  std::fill(this->stored_ + share.begin, this->stored_ + share.end,
     Stored{ 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F });
   // Weight over the square of the normal's length.
-  const auto addPlane = [&](Index node, const Vector& normal, double factor)
+  const auto addPlane = [&](const auto& ours, Index node, const Vector& normal, double factor)
   {
     if (!ours.has(node))
     {
@@ -122,8 +122,8 @@ void QuadricCriterion::addPlanes(const Nodes& ours)
     s.yz += static_cast<float>(weighted.y * normal.z);
     s.zx += static_cast<float>(weighted.z * normal.x);
   };
-  this->topology_.visitTriangles(ours,
-    [&](Index t)
+  this->topology_.visitTriangles(share,
+    [&](Index t, const auto& ours)
     {
       const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
       if (std::none_of(triangle.nodes.begin(), triangle.nodes.end(),
@@ -141,7 +141,7 @@ void QuadricCriterion::addPlanes(const Nodes& ours)
       const double third = 1.0 / (6.0 * std::sqrt(square)); // of the area
       for (int c = 0; c < 3; ++c)
       {
-        addPlane(triangle.nodes[c], normal, third);
+        addPlane(ours, triangle.nodes[c], normal, third);
       }
       for (int c = 0; c < 3; ++c)
       {
@@ -151,8 +151,8 @@ void QuadricCriterion::addPlanes(const Nodes& ours)
           const int to = previousCorner(c);
           // As long as the edge times the normal, and weighted by the edge's square.
           const Vector upright = cross(this->unit_ * (at(to) - at(from)), normal);
-          addPlane(triangle.nodes[from], upright, kBoundaryWeight / square);
-          addPlane(triangle.nodes[to], upright, kBoundaryWeight / square);
+          addPlane(ours, triangle.nodes[from], upright, kBoundaryWeight / square);
+          addPlane(ours, triangle.nodes[to], upright, kBoundaryWeight / square);
         }
       }
     });
@@ -160,13 +160,14 @@ void QuadricCriterion::addPlanes(const Nodes& ours)
 
 // Of some of the nodes.
 template <typename Nodes>
-void QuadricCriterion::findCosts(const Nodes& ours)
+void QuadricCriterion::findCosts(const Nodes& share)
 {
-  for (Index i = ours.begin; i < ours.end; ++i)
+  for (Index i = share.begin; i < share.end; ++i)
   {
     setFirstCost(this->topology_.node(i), std::numeric_limits<float>::infinity());
   }
-  const auto compare = [&](Index from, Index to, bool boundary, const Vector& place)
+  const auto compare = [&](
+                         const auto& ours, Index from, Index to, bool boundary, const Vector& place)
   {
     MeshNode& node = this->topology_.node(from);
     if (!ours.has(from) || (node.kind == NodeKind::Boundary && !boundary))
@@ -184,8 +185,8 @@ void QuadricCriterion::findCosts(const Nodes& ours)
       node.value = to;
     }
   };
-  this->topology_.visitTriangles(ours,
-    [&](Index t)
+  this->topology_.visitTriangles(share,
+    [&](Index t, const auto& ours)
     {
       const TriangleTopology::Triangle& triangle = this->topology_.triangle(t);
       for (int c = 0; c < 3; ++c)
@@ -202,8 +203,8 @@ void QuadricCriterion::findCosts(const Nodes& ours)
           }
           const Vector place =
             this->unit_ * (this->topology_.node(b).position - this->topology_.node(a).position);
-          compare(a, b, across == kNoCorner, place);
-          compare(b, a, across == kNoCorner, place);
+          compare(ours, a, b, across == kNoCorner, place);
+          compare(ours, b, a, across == kNoCorner, place);
         }
       }
     });

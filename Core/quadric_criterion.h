@@ -139,9 +139,9 @@ private:
   void store(Index node, const Quadric& quadric);
   double meanSquare(const Quadric& quadric, Index from, Index to) const;
   template <typename Nodes>
-  void addPlanes(const Nodes& ours);
+  void addPlanes(const Nodes& share);
   template <typename Nodes>
-  void findCosts(const Nodes& ours);
+  void findCosts(const Nodes& share);
   void prefetchExpected(const Hole& hole) const;
   bool fillByFan(
     const Hole& hole, const HoleRing& ring, int apex, HoleTriangulation& filling) const;

@@ -10,6 +10,7 @@
 #include "types.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -59,22 +60,25 @@ struct Whole : Share
   static constexpr bool has(Index /*i*/) { return true; }
 };
 
-/// Do job(share) for shares of [0, count), one for each thread, or job(whole) if there is only one
-/// (or null).
+/// Shares of work for each thread: who shares a core with others gets fewer of them.
+constexpr Index kSharesPerThread = 16;
+
+/// Do job(share) for shares of [0, count), so many for each thread, or job(whole) if there is only
+/// one thread (or null).
 template <typename Job>
-void doInShares(Threads* threads, Index count, const Job& job)
+void doInShares(
+  Threads* threads, Index count, const Job& job, Index sharesPerThread = kSharesPerThread)
 {
-  const Index shares = threads ? threads->count() : 1;
-  if (shares == 1)
+  if (!threads || threads->count() == 1)
   {
     job(Whole{ { 0, count } });
     return;
   }
-  const Index size = count / shares + 1;
-  threads->run(shares,
-    [&](Index i, int /*thread*/) {
-      job(Share{ std::min(count, i * size), std::min(count, i * size + size) });
-    });
+  const Index shares = threads->count() * sharesPerThread;
+  const std::int64_t size = count / shares + 1;
+  const auto begin = [&](Index i)
+  { return static_cast<Index>(std::min<std::int64_t>(count, i * size)); };
+  threads->run(shares, [&](Index i, int /*thread*/) { job(Share{ begin(i), begin(i + 1) }); });
 }
 
 } // namespace undecimate

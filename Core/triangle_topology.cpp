@@ -123,16 +123,38 @@ void TriangleTopology::findRanges(Index begin, Index end)
   }
 }
 
+// As many as the ranges allow: one that lies in several shares is visited for each of them.
+Index TriangleTopology::sharesPerThread(Index threads) const
+{
+  const auto visits = [&](Index perThread)
+  {
+    const Index size = this->nodeCount() / (threads * perThread) + 1;
+    std::size_t sum = 0;
+    for (const NodeRange& range : this->ranges_)
+    {
+      sum += static_cast<std::size_t>(range.highest / size - range.lowest / size) + 1;
+    }
+    return sum;
+  };
+  const std::size_t most = this->ranges_.size() + this->ranges_.size() / 8;
+  Index perThread = this->ranges_.empty() ? 1 : kSharesPerThread;
+  while (perThread > 1 && visits(perThread) > most)
+  {
+    perThread /= 2;
+  }
+  return perThread;
+}
+
 // connect() by several threads, each for the edges whose smaller node is in its share. False if
 // there are edges of more than two or of misoriented triangles, which lie in several shares.
 bool TriangleTopology::connect(Threads& threads)
 {
   LargeArray<Corner, 2> next(std::size_t{ 3 } * this->triangles_.size());
   std::atomic<bool> good{ true };
-  doInShares(&threads, this->nodeCount(),
-    [&](const Share& ours)
+  this->doInNodeShares(&threads,
+    [&](const Share& share)
     {
-      if (!this->connectShare(ours, next))
+      if (!this->connectShare(share, next))
       {
         good = false;
       }
@@ -140,12 +162,12 @@ bool TriangleTopology::connect(Threads& threads)
   return good;
 }
 
-bool TriangleTopology::connectShare(const Share& ours, LargeArray<Corner, 2>& next)
+bool TriangleTopology::connectShare(const Share& share, LargeArray<Corner, 2>& next)
 {
   const auto behind = [&next](Corner corner) -> Corner&
   { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
   bool good = true;
-  const auto connectTriangle = [&](Index i)
+  const auto connectTriangle = [&](Index i, const auto& ours)
   {
     const std::array<Index, 3> nodes = this->triangles_[i].nodes;
     for (int c = 0; c < 3; ++c)
@@ -195,12 +217,12 @@ bool TriangleTopology::connectShare(const Share& ours, LargeArray<Corner, 2>& ne
       this->triangles_[i].across[c] = there;
     }
   };
-  this->visitTriangles(ours,
-    [&](Index i)
+  this->visitTriangles(share,
+    [&](Index i, const auto& ours)
     {
       if (good)
       {
-        connectTriangle(i);
+        connectTriangle(i, ours);
       }
     });
   return good;
@@ -318,11 +340,11 @@ void TriangleTopology::markNodes(Threads* threads)
   // In the nodes' values: twice their triangles, and 1 if a fan's end is here, a boundary edge that
   // leaves the node. Their corners are heads of connect()'s lists until the first triangle is
   // found.
-  doInShares(threads, nodeCount,
-    [&](const auto& ours)
+  this->doInNodeShares(threads,
+    [&](const auto& share)
     {
-      this->visitTriangles(ours,
-        [&](Index i)
+      this->visitTriangles(share,
+        [&](Index i, const auto& ours)
         {
           const Triangle& t = this->triangles_[i];
           for (int c = 0; c < 3; ++c)

@@ -276,25 +276,51 @@ public:
   /// triangle i. The other slots are free afterwards.
   void replace(const Hole& hole, const HoleTriangulation& filling);
 
-  /// Visit(t) for all triangles that have a node of a share, and others. Where the numbers of
-  /// triangles and nodes run together, as most do, the others are few.
+  /// As undecimate::doInShares() for the nodes, for jobs that visit the triangles of their share:
+  /// in so few shares that together they visit hardly more triangles than there are, but one for
+  /// each thread at least.
+  template <typename Job>
+  void doInNodeShares(Threads* threads, const Job& job) const
+  {
+    doInShares(
+      threads, this->nodeCount(), job, this->sharesPerThread(threads ? threads->count() : 1));
+  }
+
+  /// Visit(t, ours) for all triangles that have a node of a share, and others: ours is the share,
+  /// or Whole where all nodes of the triangle are known to be in it. Where the numbers of triangles
+  /// and nodes run together, as most do, the others are few.
   template <typename Visit>
   void visitTriangles(const Share& nodes, Visit&& visit) const
   {
+    const Whole whole{ nodes };
     for (Index begin = 0; begin < this->triangleCount(); begin += kNodeRangeTriangles)
     {
-      const NodeRange* range = this->ranges_.empty()
-        ? nullptr
-        : &this->ranges_[static_cast<std::size_t>(begin / kNodeRangeTriangles)];
-      if (range && (range->highest < nodes.begin || range->lowest >= nodes.end))
-      {
-        continue;
-      }
+      const NodeRange range = this->ranges_.empty()
+        ? NodeRange{ 0, this->nodeCount() - 1 }
+        : this->ranges_[static_cast<std::size_t>(begin / kNodeRangeTriangles)];
       const Index count = std::min(kNodeRangeTriangles, this->triangleCount() - begin);
-      for (Index t = begin; t < begin + count; ++t)
+      if (range.lowest >= nodes.begin && range.highest < nodes.end)
       {
-        visit(t);
+        for (Index t = begin; t < begin + count; ++t)
+        {
+          visit(t, whole);
+        }
       }
+      else if (range.highest >= nodes.begin && range.lowest < nodes.end)
+      {
+        for (Index t = begin; t < begin + count; ++t)
+        {
+          visit(t, nodes);
+        }
+      }
+    }
+  }
+  template <typename Visit>
+  void visitTriangles(const Whole& nodes, Visit&& visit) const
+  {
+    for (Index t = 0; t < this->triangleCount(); ++t)
+    {
+      visit(t, nodes);
     }
   }
 
@@ -347,9 +373,10 @@ private:
   template <typename Number>
   void build(const Number* triangles, Threads* threads);
   void connect();
-  bool connectShare(const Share& ours, LargeArray<Corner, 2>& next);
+  bool connectShare(const Share& share, LargeArray<Corner, 2>& next);
   bool connect(Threads& threads);
   void findRanges(Index begin, Index end);
+  Index sharesPerThread(Index threads) const;
   void markDegenerate(Threads* threads);
   void markNodes(Threads* threads);
 

@@ -7,7 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <random>
+#include <vector>
 
 namespace undecimate
 {
@@ -464,7 +467,7 @@ TEST(TriangleTopology, ThreadsDoNotMatter)
   degenerate.addTriangle(5, 5, 9);
   Index touching = kNone;
   for (const Mesh& mesh : { holed, repeated, degenerate, testing::tJoint(20),
-         testing::bowTie(8, touching), testing::hills(200, 150), Mesh() })
+         testing::bowTie(8, touching), testing::hills(400, 300), Mesh() })
   {
     const TriangleTopology serial(mesh.view());
     for (const int count : { 1, 2, 5 })
@@ -487,6 +490,47 @@ TEST(TriangleTopology, ThreadsDoNotMatter)
         ASSERT_EQ(parallel.node(i).kind, serial.node(i).kind);
         ASSERT_EQ(parallel.node(i).position.x, serial.node(i).position.x);
       }
+    }
+  }
+}
+
+// Whether numbers run together decides how finely the work is shared out, not what is visited.
+TEST(TriangleTopology, SharesVisitTheTrianglesOfTheirNodes)
+{
+  std::mt19937 random(4);
+  const Mesh ordered = testing::hills(400, 300);
+  for (const Mesh& mesh : { ordered, testing::shuffled(ordered, random), testing::torus(6, 5) })
+  {
+    Threads threads(3);
+    const TriangleTopology topology(mesh.view(), &threads);
+    std::vector<std::atomic<int>> visits(3 * static_cast<std::size_t>(topology.triangleCount()));
+    std::atomic<int> shares{ 0 };
+    std::atomic<std::size_t> all{ 0 };
+    topology.doInNodeShares(&threads,
+      [&](const auto& share)
+      {
+        ++shares;
+        topology.visitTriangles(share,
+          [&](Index t, const auto& ours)
+          {
+            ++all;
+            for (int c = 0; c < 3; ++c)
+            {
+              const Index node = topology.triangle(t).nodes[c];
+              ASSERT_EQ(ours.has(node), share.has(node));
+              visits[3 * static_cast<std::size_t>(t) + c] += ours.has(node) ? 1 : 0;
+            }
+          });
+      });
+    EXPECT_TRUE(std::all_of(visits.begin(), visits.end(), [](int times) { return times == 1; }));
+    if (mesh.triangles == ordered.triangles)
+    {
+      EXPECT_GT(shares, threads.count());
+      EXPECT_LE(all, 1.25 * topology.triangleCount());
+    }
+    else
+    {
+      EXPECT_EQ(shares, threads.count());
     }
   }
 }
