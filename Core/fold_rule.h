@@ -117,9 +117,11 @@ public:
     doInShares(threads, topology.triangleCount(),
       [&](const Share& share)
       {
-        std::array<bool, 6> faces{ true, true, true, true, true, true };
+        std::unique_lock<std::mutex> lock(mutex);
+        std::array<bool, 6> faces = facing; // as others have left it: a share may face one way
+        lock.unlock();
         const bool some = addFaces(topology, share, faces);
-        const std::lock_guard<std::mutex> lock(mutex);
+        lock.lock();
         any = any || some;
         std::transform(
           facing.begin(), facing.end(), faces.begin(), facing.begin(), std::logical_and<bool>());

@@ -4,7 +4,7 @@
 #include "mean_edge_criterion.h"
 
 #include "hash_queue_decimation.h"
-#include "testing/meshes.h"
+#include "testing/decimated.h"
 
 #include <gtest/gtest.h>
 
@@ -182,6 +182,29 @@ TEST(MeanEdgeCriterion, VectorsCompareByTheNormOfTheDifference)
   EXPECT_NEAR(cost, (5.0 + 12.0) / 2.0 / 13.0, 1e-8);
   criterion.evaluate(1, cost);
   EXPECT_NEAR(cost, (5.0 + 13.0) / 2.0 / 13.0, 1e-8);
+}
+
+TEST(MeanEdgeCriterion, ThreadsDoNotMatter)
+{
+  const Mesh mesh = testing::hills(400, 300);
+  const std::vector<float> values =
+    testing::valuesOn(mesh, [](double x, double y, double z) { return x * y + z; });
+  const NodalArrayView array = viewOf(values);
+  TriangleTopology topology(mesh.view());
+  const MeanEdgeCriterion criterion(topology, &array);
+  for (const int count : { 2, 5 })
+  {
+    Threads threads(count);
+    TriangleTopology shared(mesh.view(), &threads);
+    const MeanEdgeCriterion parallel(shared, &array, &threads);
+    for (Index node = 0; node < mesh.nodeCount(); ++node)
+    {
+      double serialCost = 0.0;
+      double cost = 0.0;
+      ASSERT_EQ(parallel.evaluate(node, cost), criterion.evaluate(node, serialCost));
+      ASSERT_EQ(cost, serialCost);
+    }
+  }
 }
 
 TEST(FiveNodes, NonFiniteValuesAreKeptAndCountAsTheWholeRange)

@@ -79,6 +79,25 @@ TEST(OriginalSurface, NormalsAreUnitAndWeightedByArea)
   }
 }
 
+TEST(OriginalSurface, ThreadsDoNotMatter)
+{
+  const Mesh mesh = testing::hills(400, 300);
+  const TriangleTopology topology(mesh.view());
+  const OriginalSurface surface(topology);
+  for (const int count : { 2, 5 })
+  {
+    Threads threads(count);
+    const TriangleTopology shared(mesh.view(), &threads);
+    const OriginalSurface parallel(shared, &threads);
+    for (Index node = 0; node < mesh.nodeCount(); ++node)
+    {
+      const auto entries = surface.ring(node);
+      const auto others = parallel.ring(node);
+      ASSERT_TRUE(std::equal(others.begin(), others.end(), entries.begin(), entries.end()));
+    }
+  }
+}
+
 TEST(OriginalSurface, NoNormalWithoutATriangle)
 {
   Mesh mesh = testing::cube(1);

@@ -101,6 +101,24 @@ TEST(QuadricCriterion, CostsByHand)
   }
 }
 
+TEST(QuadricCriterion, ThreadsDoNotMatter)
+{
+  const Mesh mesh = testing::hills(400, 300);
+  TriangleTopology topology(mesh.view());
+  const QuadricCriterion criterion(topology);
+  for (const int count : { 2, 5 })
+  {
+    Threads threads(count);
+    TriangleTopology shared(mesh.view(), &threads);
+    const QuadricCriterion parallel(shared, &threads);
+    for (Index node = 0; node < mesh.nodeCount(); ++node)
+    {
+      ASSERT_EQ(costOf(parallel, node), costOf(criterion, node));
+      ASSERT_EQ(shared.node(node).value, topology.node(node).value);
+    }
+  }
+}
+
 //   1----3----5      A roof from above: slopes of 1, the ridge 2-3 is 1 high, all 2 deep. The
 //   |  / |  / |      diagonal of the box is 3.
 //   0----2----4

@@ -48,7 +48,8 @@ private:
   std::unique_ptr<Internals> internals_;
 };
 
-/// A part of the indices [0, count), or all of them, which costs no question.
+/// A part of the indices [0, count), or Whole: all that is asked for is known to be in it, which
+/// costs no question.
 struct Share
 {
   Index begin;

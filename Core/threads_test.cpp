@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <limits>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -68,6 +70,30 @@ TEST_P(SomeThreads, SharesCoverAllOnce)
       EXPECT_EQ(ours.begin, 0);
       EXPECT_EQ(ours.end, 7);
     });
+}
+
+TEST_P(SomeThreads, SharesOfTheLargestCount)
+{
+  Threads threads(GetParam());
+  constexpr Index kMost = std::numeric_limits<Index>::max();
+  std::mutex mutex;
+  std::vector<Share> shares;
+  doInShares(&threads, kMost,
+    [&](const Share& share)
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      shares.push_back(share);
+    });
+  std::sort(
+    shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.begin < b.begin; });
+  Index end = 0;
+  for (const Share& share : shares)
+  {
+    EXPECT_EQ(share.begin, end);
+    EXPECT_GT(share.end, share.begin);
+    end = share.end;
+  }
+  EXPECT_EQ(end, kMost);
 }
 
 TEST_P(SomeThreads, WhatWasWrittenBeforeIsSeen)

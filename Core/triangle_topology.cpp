@@ -154,7 +154,7 @@ bool TriangleTopology::connect(Threads& threads)
   this->doInNodeShares(&threads,
     [&](const Share& share)
     {
-      if (!this->connectShare(share, next))
+      if (good && !this->connectShare(share, next))
       {
         good = false;
       }

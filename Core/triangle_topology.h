@@ -288,7 +288,7 @@ public:
 
   /// Visit(t, ours) for all triangles that have a node of a share, and others: ours is the share,
   /// or Whole where all nodes of the triangle are known to be in it. Where the numbers of triangles
-  /// and nodes run together, as most do, the others are few.
+  /// and nodes run together, as most do, the others are few. Before the first replace() only.
   template <typename Visit>
   void visitTriangles(const Share& nodes, Visit&& visit) const
   {

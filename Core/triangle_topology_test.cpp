@@ -466,8 +466,11 @@ TEST(TriangleTopology, ThreadsDoNotMatter)
   Mesh degenerate = holed;
   degenerate.addTriangle(5, 5, 9);
   Index touching = kNone;
+  const Mesh large = testing::hills(400, 300);
+  Mesh largeRepeated = large;
+  largeRepeated.addTriangle(large.triangles[0], large.triangles[1], large.triangles[2]);
   for (const Mesh& mesh : { holed, repeated, degenerate, testing::tJoint(20),
-         testing::bowTie(8, touching), testing::hills(400, 300), Mesh() })
+         testing::bowTie(8, touching), large, largeRepeated, Mesh() })
   {
     const TriangleTopology serial(mesh.view());
     for (const int count : { 1, 2, 5 })
@@ -505,7 +508,7 @@ TEST(TriangleTopology, SharesVisitTheTrianglesOfTheirNodes)
     const TriangleTopology topology(mesh.view(), &threads);
     std::vector<std::atomic<int>> visits(3 * static_cast<std::size_t>(topology.triangleCount()));
     std::atomic<int> shares{ 0 };
-    std::atomic<std::size_t> all{ 0 };
+    std::atomic<Index> all{ 0 };
     topology.doInNodeShares(&threads,
       [&](const auto& share)
       {
@@ -531,6 +534,42 @@ TEST(TriangleTopology, SharesVisitTheTrianglesOfTheirNodes)
     else
     {
       EXPECT_EQ(shares, threads.count());
+    }
+  }
+}
+
+// Shares that end at, before and behind the first and last nodes of ranges of triangles.
+TEST(TriangleTopology, NoNodeIsTakenForOneOfAShareBesideIt)
+{
+  Mesh mesh;
+  for (Index node = 0; node < 12000; node += 3)
+  {
+    mesh.addNode(node, 0.0, 0.0);
+    mesh.addNode(node, 1.0, 0.0);
+    mesh.addNode(node, 0.0, 1.0);
+    mesh.addTriangle(node, node + 1, node + 2);
+  }
+  Threads threads(2);
+  const TriangleTopology topology(mesh.view(), &threads);
+  for (const Index middle : { 3 * 1024, 2 * 3 * 1024 })
+  {
+    for (Index begin = middle - 2; begin <= middle + 2; ++begin)
+    {
+      for (Index end = middle + 3 * 1024 - 2; end <= middle + 3 * 1024 + 2; ++end)
+      {
+        const Share share{ begin, end };
+        Index found = 0;
+        topology.visitTriangles(share,
+          [&](Index t, const auto& ours)
+          {
+            for (const Index node : topology.triangle(t).nodes)
+            {
+              ASSERT_EQ(ours.has(node), share.has(node)) << node;
+              found += ours.has(node) ? 1 : 0;
+            }
+          });
+        EXPECT_EQ(found, end - begin);
+      }
     }
   }
 }
