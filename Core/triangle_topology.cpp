@@ -164,65 +164,53 @@ bool TriangleTopology::connect(Threads& threads)
 
 bool TriangleTopology::connectShare(const Share& share, LargeArray<Corner, 2>& next)
 {
-  const auto behind = [&next](Corner corner) -> Corner&
-  { return next[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
   bool good = true;
-  const auto connectTriangle = [&](Index i, const auto& ours)
-  {
-    const std::array<Index, 3> nodes = this->triangles_[i].nodes;
-    for (int c = 0; c < 3; ++c)
-    {
-      const Index from = nodes[nextCorner(c)];
-      const Index to = nodes[previousCorner(c)];
-      if (ours.has(nodes[c]))
-      {
-        this->nodes_[nodes[c]].neighbours |= signature(from) | signature(to);
-      }
-      const Index smaller = std::min(from, to);
-      if (!ours.has(smaller))
-      {
-        continue;
-      }
-      const Corner here = makeCorner(i, c);
-      Corner& first = this->nodes_[smaller].corner;
-      Corner there = first;
-      for (; there != kNoCorner; there = behind(there))
-      {
-        const auto& others = this->triangles_[triangleOf(there)].nodes;
-        const Index thereFrom = others[nextCorner(cornerOf(there))];
-        const Index thereTo = others[previousCorner(cornerOf(there))];
-        if (thereFrom == from && thereTo == to)
-        {
-          good = false;
-          return;
-        }
-        if (thereFrom == to && thereTo == from)
-        {
-          break;
-        }
-      }
-      if (there == kNoCorner)
-      {
-        behind(here) = first;
-        first = here;
-        continue;
-      }
-      Corner& across = this->triangles_[triangleOf(there)].across[cornerOf(there)];
-      if (across != kNoCorner)
-      {
-        good = false;
-        return;
-      }
-      across = here;
-      this->triangles_[i].across[c] = there;
-    }
-  };
+  // Local copies: what is written could be theirs.
+  Triangle* const triangles = this->triangles_.data();
+  MeshNode* const meshNodes = this->nodes_.data();
+  const auto behind = [list = next.data()](Corner corner) -> Corner&
+  { return list[std::size_t{ 3 } * triangleOf(corner) + cornerOf(corner)]; };
   this->visitTriangles(share,
     [&](Index i, const auto& ours)
     {
-      if (good)
+      Triangle& t = triangles[i];
+      for (int c = 0; c < 3; ++c)
       {
-        connectTriangle(i, ours);
+        const Index from = t.nodes[nextCorner(c)];
+        const Index to = t.nodes[previousCorner(c)];
+        const Index smaller = std::min(from, to);
+        if (!ours.has(smaller))
+        {
+          continue;
+        }
+        const Corner here = makeCorner(i, c);
+        Corner& first = meshNodes[smaller].corner;
+        Corner there = first;
+        Index thereFrom = kNone;
+        for (; there != kNoCorner; there = behind(there))
+        {
+          const Triangle& o = triangles[triangleOf(there)];
+          thereFrom = o.nodes[nextCorner(cornerOf(there))];
+          const Index thereTo = o.nodes[previousCorner(cornerOf(there))];
+          if ((thereFrom == to && thereTo == from) || (thereFrom == from && thereTo == to))
+          {
+            break;
+          }
+        }
+        if (there == kNoCorner)
+        {
+          behind(here) = first;
+          first = here;
+          continue;
+        }
+        Corner& across = triangles[triangleOf(there)].across[cornerOf(there)];
+        if (across != kNoCorner || thereFrom == from)
+        {
+          good = false;
+          continue;
+        }
+        across = here;
+        t.across[c] = there;
       }
     });
   return good;
@@ -264,7 +252,6 @@ void TriangleTopology::connect()
       {
         behind(here) = first;
         first = here;
-        this->meet(from, to);
         continue;
       }
       Triangle& o = this->triangles_[triangleOf(there)];
@@ -337,7 +324,8 @@ void TriangleTopology::markDegenerate(Threads* threads)
 void TriangleTopology::markNodes(Threads* threads)
 {
   const Index nodeCount = this->nodeCount();
-  // In the nodes' values: twice their triangles, and 1 if a fan's end is here, a boundary edge that
+  // Neighbours, which connecting would meet at twice as many places. In the nodes' values: twice
+  // their triangles, and 1 if a fan's end is here, a boundary edge that
   // leaves the node. Their corners are heads of connect()'s lists until the first triangle is
   // found.
   this->doInNodeShares(threads,
@@ -354,6 +342,8 @@ void TriangleTopology::markNodes(Threads* threads)
               continue;
             }
             MeshNode& node = this->nodes_[t.nodes[c]];
+            node.neighbours |=
+              signature(t.nodes[nextCorner(c)]) | signature(t.nodes[previousCorner(c)]);
             // The first triangle of an open fan has nothing behind its edge node -> next node.
             const bool start = t.across[previousCorner(c)] == kNoCorner;
             if (start || node.value == 0)
