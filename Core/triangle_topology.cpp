@@ -324,10 +324,9 @@ void TriangleTopology::markDegenerate(Threads* threads)
 void TriangleTopology::markNodes(Threads* threads)
 {
   const Index nodeCount = this->nodeCount();
-  // Neighbours, which connecting would meet at twice as many places. In the nodes' values: twice
-  // their triangles, and 1 if a fan's end is here, a boundary edge that
-  // leaves the node. Their corners are heads of connect()'s lists until the first triangle is
-  // found.
+  // The neighbours, and in the nodes' values twice their triangles, and 1 if a fan's end is here, a
+  // boundary edge that leaves the node. Their corners are heads of connect()'s lists until the
+  // first triangle is found.
   this->doInNodeShares(threads,
     [&](const auto& share)
     {
