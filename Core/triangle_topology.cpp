@@ -29,6 +29,31 @@ void doInBlocks(Threads* threads, Index count, Index block, const Job& job)
 
 constexpr Index kBlock = 1 << 14;
 
+struct ListedCorner
+{
+  Corner corner;
+  Index from; // the node after it
+};
+
+// In a list of corners, the one opposite to the edge between two nodes, or kNoCorner.
+template <typename Behind>
+ListedCorner findListed(const TriangleTopology::Triangle* triangles, Corner first,
+  const Behind& behind, Index from, Index to)
+{
+  Index otherFrom = kNone;
+  for (; first != kNoCorner; first = behind(first))
+  {
+    const auto& nodes = triangles[triangleOf(first)].nodes;
+    otherFrom = nodes[nextCorner(cornerOf(first))];
+    const Index otherTo = nodes[previousCorner(cornerOf(first))];
+    if ((otherFrom == to && otherTo == from) || (otherFrom == from && otherTo == to))
+    {
+      break;
+    }
+  }
+  return { first, otherFrom };
+}
+
 } // namespace
 
 TriangleTopology::TriangleTopology(const Index* triangles, Index triangleCount, Index nodeCount)
@@ -185,18 +210,7 @@ bool TriangleTopology::connectShare(const Share& share, LargeArray<Corner, 2>& n
         }
         const Corner here = makeCorner(i, c);
         Corner& first = meshNodes[smaller].corner;
-        Corner there = first;
-        Index thereFrom = kNone;
-        for (; there != kNoCorner; there = behind(there))
-        {
-          const Triangle& o = triangles[triangleOf(there)];
-          thereFrom = o.nodes[nextCorner(cornerOf(there))];
-          const Index thereTo = o.nodes[previousCorner(cornerOf(there))];
-          if ((thereFrom == to && thereTo == from) || (thereFrom == from && thereTo == to))
-          {
-            break;
-          }
-        }
+        const auto [there, thereFrom] = findListed(triangles, first, behind, from, to);
         if (there == kNoCorner)
         {
           behind(here) = first;
@@ -236,18 +250,7 @@ void TriangleTopology::connect()
       const Index smaller = std::min(from, to);
       const Corner here = makeCorner(i, c);
       Corner& first = this->nodes_[smaller].corner;
-      Corner there = first;
-      Index thereFrom = kNone;
-      for (; there != kNoCorner; there = behind(there))
-      {
-        const Triangle& o = this->triangles_[triangleOf(there)];
-        thereFrom = o.nodes[nextCorner(cornerOf(there))];
-        const Index thereTo = o.nodes[previousCorner(cornerOf(there))];
-        if ((thereFrom == to && thereTo == from) || (thereFrom == from && thereTo == to))
-        {
-          break;
-        }
-      }
+      const auto [there, thereFrom] = findListed(this->triangles_.data(), first, behind, from, to);
       if (there == kNoCorner)
       {
         behind(here) = first;
